@@ -55,22 +55,6 @@ class WindowOperator(Influence, Protocol):
         """The transform of ``I[1/rho]`` on a circle without padding (m), half along the first axis."""
 
 
-class MatrixOperator(Influence, Protocol):
-    """An influence by matrices (m), one row for each element."""
-
-    @property
-    def normal_matrix(self) -> Array:
-        """``I[1/rho]`` between all pairs."""
-
-    @property
-    def shear_matrix(self) -> Array:
-        """``I[s/rho^2]`` between all pairs."""
-
-    @property
-    def shear_across_matrix(self) -> Array:
-        """``I[t/rho^2]`` between all pairs."""
-
-
 @dataclass(frozen=True)
 class Elasticity:
     """Two elastic half-spaces.
@@ -163,18 +147,6 @@ class Elasticity:
             nu = (1 - 2 * ratio) / (2 - 2 * ratio)
             found.append(((1 - nu**2) / (math.pi * body.normal_compliance), nu))
         return found[0], found[1]
-
-    def normal_matrix(self, operator: MatrixOperator) -> Array:
-        """Return ``a`` between all pairs of elements (m/Pa)."""
-        return self.pair.normal_compliance * operator.normal_matrix
-
-    def shear_matrix(self, operator: MatrixOperator) -> Array:
-        """Return ``c`` along the sliding direction between all pairs of elements (m/Pa)."""
-        return self.pair.shear_compliance * operator.shear_matrix
-
-    def shear_across_matrix(self, operator: MatrixOperator) -> Array:
-        """Return ``c`` across the sliding direction between all pairs of elements (m/Pa)."""
-        return self.pair.shear_compliance * operator.shear_across_matrix
 
     def symbol(self, coefficients: Array) -> Array:
         """Return the transform of ``a`` (m/Pa) from that of ``I[1/rho]`` (m), for approximate inverses."""

@@ -1,0 +1,7 @@
+"""The verification cases by subject; a module of cases imports from here what it declares them with."""
+
+from verification.framework.case import Measured, Unavailable
+from verification.framework.registry import case, family
+from verification.framework.verdict import Verdict, judged
+
+__all__ = ["Measured", "Unavailable", "Verdict", "case", "family", "judged"]

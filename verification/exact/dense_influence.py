@@ -6,7 +6,6 @@ import math
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from refimpl.grid import Array, Grid
 from refimpl.kernels import normal_integral, tangential_integral
@@ -29,19 +28,17 @@ class DenseInfluence:
     @cached_property
     def normal_matrix(self) -> Array:
         """``I[1/rho]`` between all pairs of elements (m), symmetric."""
-        if self.grid.periodic:
-            return self._from_symbol(None)
-        return self._pairs(normal_integral(*self._offsets, *self.grid.spacings))
+        return self._pairs(None)
 
     @cached_property
     def shear_matrix(self) -> Array:
         """``I[s/rho^2]`` between all pairs, ``s`` along the sliding direction (m), skew."""
-        return self._along(self.direction)
+        return self._pairs(self.direction)
 
     @cached_property
     def shear_across_matrix(self) -> Array:
         """``I[t/rho^2]`` between all pairs, ``t`` across the sliding direction (m), skew."""
-        return self._along(self.direction + math.pi / 2)
+        return self._pairs(self.direction + math.pi / 2)
 
     def normal(self, pressure: Array) -> Array:
         """``I[1/rho]`` applied to a pressure."""
@@ -55,49 +52,31 @@ class DenseInfluence:
         """``I[t/rho^2]`` applied to a traction across the sliding direction."""
         return (self.shear_across_matrix @ traction.ravel()).reshape(traction.shape)
 
-    @property
-    def _offsets(self) -> tuple[Array, Array]:
-        """All offsets between centres along x (a column) and y (a row) (m)."""
-        along = (
-            np.arange(1 - count, count, dtype=np.float64) * edge
-            for count, edge in zip(self.grid.shape, self.grid.spacings, strict=True)
-        )
-        x, y = along
-        return x[:, None], y[None, :]
-
-    def _along(self, angle: float) -> Array:
-        if self.grid.periodic:
-            return self._from_symbol(angle)
-        (x, y), (dx, dy) = self._offsets, self.grid.spacings
-        along_x, along_y = tangential_integral(x, y, dx, dy), tangential_integral(y, x, dy, dx)
-        return self._pairs(math.cos(angle) * along_x + math.sin(angle) * along_y)
-
-    def _pairs(self, by_offset: Array) -> Array:
-        """Matrix over pairs (field, source) from values over the ``(2 Mx - 1, 2 My - 1)`` offsets."""
-        n, m = self.grid.shape
-        i, j = np.divmod(np.arange(n * m), m)
-        pairs: Array = by_offset[i[:, None] - i[None, :] + n - 1, j[:, None] - j[None, :] + m - 1]
+    def _pairs(self, angle: float | None) -> Array:
+        """``I[1/rho]``, or ``I[s/rho^2]`` with s at an angle, between all pairs (field, source)."""
+        table = self._transformed(angle) if self.grid.periodic else self._integrated(angle)
+        i, j = np.divmod(np.arange(self.grid.elements), self.grid.shape[1])
+        pairs: Array = table[i[:, None] - i[None, :], j[:, None] - j[None, :]]  # negative: from the end
         return pairs
 
-    def _from_symbol(self, angle: float | None) -> Array:
-        """Periodic matrix by summing the Fourier modes one by one: ``2 pi/q`` or ``-2 pi i q_s/q^2``."""
-        (q_x, odd_x, wave_x), (q_y, odd_y, wave_y) = self._modes(0), self._modes(1)
-        squared = q_x[:, None] ** 2 + q_y[None, :] ** 2
-        squared[squared == 0] = np.inf  # the mean pressure displaces nothing
+    def _integrated(self, angle: float | None) -> Array:
+        """Integrals over an element at all offsets ``0 ... n - 1, 1 - n ... -1`` along both axes (m)."""
+        (n, m), (dx, dy) = self.grid.shape, self.grid.spacings
+        x, y = (np.r_[0:n, 1 - n : 0] * dx)[:, None], (np.r_[0:m, 1 - m : 0] * dy)[None, :]
         if angle is None:
-            symbol = 2 * np.pi / np.sqrt(squared) + 0j
-        else:
-            q_s = math.cos(angle) * odd_x[:, None] + math.sin(angle) * odd_y[None, :]
-            symbol = -2j * np.pi * q_s / squared
-        return self._pairs(np.real(wave_x.T @ symbol @ wave_y) / self.grid.elements)
+            return normal_integral(x, y, dx, dy)
+        along_x, along_y = tangential_integral(x, y, dx, dy), tangential_integral(y, x, dy, dx)
+        return math.cos(angle) * along_x + math.sin(angle) * along_y
 
-    def _modes(self, axis: int) -> tuple[Array, Array, NDArray[np.complex128]]:
-        """Wavenumbers along an axis (1/m), the same of odd fields, and ``exp(i q s)`` at all offsets s."""
-        count, length = self.grid.shape[axis], self.grid.lengths[axis]
-        modes = np.arange(count) - count // 2
-        q: Array = (2 * np.pi / length) * modes.astype(np.float64)
-        odd: Array = np.where(
-            2 * modes == -count, 0.0, q
-        )  # a real field has no sine at the Nyquist frequency
-        steps = np.arange(1 - count, count) * self.grid.spacings[axis]
-        return q, odd, np.exp(1j * q[:, None] * steps[None, :])
+    def _transformed(self, angle: float | None) -> Array:
+        """Sums of the modes ``2 pi/q`` or ``-2 pi i q_s/q^2`` without the mean, at offsets from 0 (m)."""
+        axes = zip(self.grid.shape, self.grid.spacings, strict=True)
+        q_x, q_y = np.meshgrid(*(2 * np.pi * np.fft.fftfreq(*axis) for axis in axes), indexing="ij")
+        squared = q_x**2 + q_y**2
+        squared[0, 0] = np.inf  # the mean pressure displaces nothing
+        if angle is None:
+            return np.fft.ifft2(2 * np.pi / np.sqrt(squared)).real
+        q_s = math.cos(angle) * q_x + math.sin(angle) * q_y
+        return np.fft.ifft2(
+            -2j * np.pi * q_s / squared
+        ).real  # of odd fields no sine at the Nyquist frequency

@@ -1,14 +1,13 @@
 """Hertz contact of a paraboloid, round or elliptical, with a half-space.
 
 Sources: Hertz 1882; Johnson 1985, sections 3.4 and 4.2. The elliptical case is written in Carlson's integrals
-(DLMF 19.16), which have no special case for the circle; Johnson's K and E are kept for the check.
+(DLMF 19.16), which have no special case for the circle.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-import mpmath as mp
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
@@ -127,24 +126,3 @@ class Ellipse:
         alpha, beta = a**2 + w, b**2 + w
         curved = x2 * elliprd(w, beta, alpha) + y2 * elliprd(w, alpha, beta)
         return np.asarray(self.peak_pressure * a * b / self.modulus * (elliprf(w, alpha, beta) - curved / 3))
-
-
-def ellipse_by_legendre(
-    load: float, curvature_x: float, curvature_y: float, modulus: float
-) -> tuple[float, float]:
-    """Semi-axes (m) along x and y again, from Johnson (4.26)-(4.27) in K and E with mpmath; needs curvatures
-    that differ.
-    """
-    with mp.workdps(30):
-        flat, steep = sorted((mp.mpf(curvature_x), mp.mpf(curvature_y)))
-
-        def mismatch(m: mp.mpf) -> mp.mpf:
-            K, E = mp.ellipk(m), mp.ellipe(m)
-            return (E / (1 - m) - K) / (K - E) - steep / flat
-
-        m = mp.findroot(mismatch, (mp.mpf("1e-6"), 1 - mp.mpf("1e-12")), solver="anderson")
-        K, E = mp.ellipk(m), mp.ellipe(m)
-        # flat/2 = (p0/E*) b (K - E)/(e^2 a^2), p0 = 3P/(2 pi a b)
-        longer = mp.cbrt(3 * load * (K - E) / (mp.pi * modulus * m * flat))
-        axes = float(longer), float(longer * mp.sqrt(1 - m))
-    return axes if curvature_x < curvature_y else (axes[1], axes[0])

@@ -7,8 +7,6 @@
   separates into error functions and exponentials, and the trapezoidal rule in log u is left to do;
 - ``normal_enclosure``, ``tangential_enclosure``: balls that contain the exact value (Arb). The
   normal one integrates the distance to the boundary over the angle; the tangential one sums ``Im z log z``.
-
-``textbook_normal``, ``textbook_tangential`` are the corner sums in double precision, to show how they fail.
 """
 
 from __future__ import annotations
@@ -64,23 +62,6 @@ def _corner_sum(corner: Corner, x: float, y: float, dx: float, dy: float) -> Any
             if abs(total) > max(map(abs, terms)) * mp.mpf(10) ** (DIGITS + 2 - digits):
                 return total
         digits *= 2
-
-
-def textbook_normal(x: Array, y: Array, dx: float, dy: float) -> Array:
-    """Love's corner sum as printed, in double precision; not on the element's edge lines."""
-    return _textbook(lambda X, Y: X * np.arcsinh(Y / np.abs(X)) + Y * np.arcsinh(X / np.abs(Y)), x, y, dx, dy)
-
-
-def textbook_tangential(x: Array, y: Array, dx: float, dy: float) -> Array:
-    """Cerruti's corner sum as printed, in double precision; not on the element's edge lines."""
-    return _textbook(lambda X, Y: Y * np.log(X * X + Y * Y) / 2 + X * np.arctan(Y / X), x, y, dx, dy)
-
-
-def _textbook(corner: Corner, x: Array, y: Array, dx: float, dy: float) -> Array:
-    total = np.zeros(np.broadcast(x, y).shape)
-    for i, j, sign in CORNERS:
-        total += sign * corner(x + i * dx / 2, y + j * dy / 2)
-    return total
 
 
 def normal_by_transform(x: float, y: float, dx: float, dy: float, digits: int = 20) -> Any:

@@ -4,8 +4,8 @@ Circle: Boussinesq 1885; Johnson 1985, section 3.8. Square: the punch is the ele
 potential of p equal to pi E* delta on the plate, P = pi C E* (side) delta, where C is the capacitance of the
 unit square over 4 pi eps0. Published: 0.3667874 (Read 1997, J. Comput. Phys. 133, 1; as quoted by Hwang and
 Mascagni 2004, J. Appl. Phys. 95, 3798), so P = 1.1523 E* side delta. Our graded meshes extrapolate to
-0.3667880 with gradings 3 and 4 alike (0.36678805, 0.36678802), and the lower bound reaches 0.3667875 at n =
-48, which the published last digit misses.
+0.3667880 with gradings 3 and 4 alike (0.36678805, 0.36678802); a lower bound by Thomson's principle reached
+0.3667875 at n = 48, which the published last digit misses.
 
 Orders to expect from square elements of edge h. Square punch: p ~ d^(-1/2) at an edge, so a row of elements
 along it misplaces a share h of the load: order 1 in the stiffness; the corner, p ~ r^(-0.7034) (Morrison and
@@ -63,11 +63,6 @@ class CircularPunch:
         outer = np.maximum(1.0, np.asarray(r, dtype=float) / self.radius)
         return 2 * self.approach / np.pi * np.arcsin(1 / outer)
 
-    def load_within(self, r: ArrayLike) -> Array:
-        """Load carried inside radius ``r`` (N): a finite quantity to compare where the pressure is not."""
-        rho = np.minimum(1.0, np.asarray(r, dtype=float) / self.radius)
-        return np.asarray(self.load * (1 - np.sqrt(1 - rho**2)))
-
 
 def square_stiffness(side: float, modulus: float, capacitance: float = UNIT_SQUARE_CAPACITANCE) -> float:
     """P/delta (N/m) of a square punch of edge ``side`` (m), ``modulus`` E* (Pa).
@@ -87,25 +82,6 @@ def square_capacitance(n: int, grading: float = 4.0) -> float:
     plate = _Plate.graded(n, grading)
     density = np.linalg.solve(plate.potential(plate.x, plate.y), np.ones(len(plate.x)))
     return float(np.sum(density * plate.area) / 2)  # the plate's side is 2
-
-
-def square_capacitance_bound(n: int, grading: float = 4.0, gauss: int = 10) -> float:
-    """A lower bound of C by Thomson's principle, charge^2/energy of the collocated density on the same mesh.
-
-    The energy is the density times the potential averaged over each element by ``gauss x gauss`` points; that
-    rule misses 4e-7 at n = 12 and 1e-8 at n = 48 with 10 points (measured), on the safe side: the energy
-    comes out large.
-    """
-    plate = _Plate.graded(n, grading)
-    density = np.linalg.solve(plate.potential(plate.x, plate.y), np.ones(len(plate.x)))
-    mean_potential = np.zeros(len(plate.x))
-    nodes, weights = np.polynomial.legendre.leggauss(gauss)
-    for s, weight_s in zip(nodes, weights, strict=True):
-        for t, weight_t in zip(nodes, weights, strict=True):
-            field = plate.potential(plate.x + plate.half_x * s, plate.y + plate.half_y * t)
-            mean_potential += weight_s * weight_t / 4 * (field @ density)
-    charge = np.sum(density * plate.area)
-    return float(charge**2 / np.sum(density * plate.area * mean_potential) / 2)
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,8 @@ A constant tau only moves all this by -2 R d tau/E*. A hard cylinder on a softer
 and the contact reaches further to the trailing side, -x.
 
 Where tau > 0, the traction jumps at the leading edge and the free surface would pierce the cylinder there; it
-instead lies against it without pressure and with 0 < q < tau over a width of about (2 R d tau/E*)^2/(2 a)
-(`idle_width`); p is unchanged, because in the plane the shear of that zone acts only where it is.
+instead lies against it without pressure and with 0 < q < tau over a width of about (2 R d tau/E*)^2/(2 a);
+p is unchanged, because in the plane the shear of that zone acts only where it is.
 """
 
 from __future__ import annotations
@@ -84,11 +84,6 @@ class SlidingCylinder:
     @property
     def _tau_shift(self) -> float:
         return -2 * self.radius * self.coupling * self.tau / self.modulus
-
-    @property
-    def idle_width(self) -> float:
-        """Width (m) of the pressureless zone at the leading edge where beta = 0; bounds it for beta > 0."""
-        return float(np.hypot(self.half_width, self._tau_shift) - self.half_width)
 
     def pressure(self, x: ArrayLike) -> Array:
         """p (Pa) at ``x`` (m) from the lowest line, any shape."""

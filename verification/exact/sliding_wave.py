@@ -127,31 +127,6 @@ class SlidingWave:
         return np.asarray(2 * self.full_contact_pressure * np.sin(np.pi * g) * shape)
 
 
-def flatness(contact: SlidingWave, x: ArrayLike, terms: int = 4096) -> Array:
-    """u(x) + gap(x) (m) up to a constant, by Fourier series of pressure and shear: equal within contact.
-
-    Independent of the derivation: symbols 2/(E* k) for pressure and d/(i k E*) for shear (d of
-    `sliding_plane`, from the transform 2/(i k) of sign), series cut after ``terms`` waves; truncation falls
-    as terms^(-2).
-    """
-    nodes, weights = np.polynomial.legendre.leggauss(2 * terms)
-    low, high = contact.edges
-    # x = mid + half sin(pi t/2) flattens the edges' powers for the Gauss rule
-    mid, half = (low + high) / 2, (high - low) / 2
-    s = mid + half * np.sin(np.pi * nodes / 2)
-    ds = weights * half * np.pi / 2 * np.cos(np.pi * nodes / 2)
-    p = contact.pressure(s) * ds
-    q = (contact.tau * ds + contact.beta * p) * contact.coupling
-    at = np.asarray(x, dtype=float)
-    total = contact.amplitude * (1 - np.cos(2 * np.pi * at / contact.wavelength))
-    for block in np.array_split(np.arange(1, terms + 1), max(1, terms // 256)):
-        k = 2 * np.pi * block / contact.wavelength
-        waves = np.exp(-1j * np.outer(k, s)) * (2 / (contact.modulus * k * contact.wavelength))[:, None]
-        symbol = waves @ p + (waves @ q) / 1j
-        total = total + 2 * np.real(np.exp(1j * np.multiply.outer(at, k)) @ symbol)
-    return np.asarray(total)
-
-
 def principal_value_residual(contact: SlidingWave, x: float) -> float:
     """The integral equation's misfit at ``x`` (m) in the contact over its largest term, by quadrature."""
     with mp.workdps(20):

@@ -12,8 +12,6 @@ from typing import NamedTuple
 
 KOGUT_ETSION_LARGEST = 110.0
 """Interference over its critical value up to which Kogut and Etsion computed: mean pressure = hardness."""
-HARDNESS_OVER_YIELD = 2.8
-"""H / Y of Kogut and Etsion."""
 
 
 class Loaded(NamedTuple):

@@ -8,9 +8,9 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
+from verification.exact.textbook import normal_matrix, shear_matrix
 from verification.properties.registry import Solver, invariant, require
 from verification.properties.samples import SIDE, Sample, samples
-from verification.properties.textbook import normal_matrix, shear_matrix
 
 RESIDUAL = 1e-9
 """Relative; solvers have the tolerance 1e-12, and a thousand times that covers the difference of a state's

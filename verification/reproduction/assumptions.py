@@ -22,15 +22,9 @@ def kinematic_margin(scene: rf.Scene, found: rf.Solution) -> float:
 
 def sheared_scene(beta: float) -> rf.Scene:
     """A steel ball on a polymer at 10 mN, with a shear of ``beta`` times the pressure."""
-    polymer = rf.Material(E=1e9, nu=0.2)
-    steel = rf.Material(E=200e9, nu=0.3)
-    return rf.Scene(
-        upper=rf.Body(steel, rf.Sphere(radius=0.14)),
-        lower=rf.Body(polymer, rf.Flat()),
-        friction=rf.Friction(tau=0.0, beta=beta),
-        load=0.01,
-        side=4e-4,
-    )
+    steel, polymer = rf.Material(E=200e9, nu=0.3), rf.Material(E=1e9, nu=0.2)
+    bodies = rf.Body(steel, rf.Sphere(radius=0.14)), rf.Body(polymer, rf.Flat())
+    return rf.Scene(*bodies, rf.Friction(beta=beta), load=0.01, side=4e-4)
 
 
 @dataclass(frozen=True)

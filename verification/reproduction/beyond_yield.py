@@ -39,7 +39,6 @@ class Found:
 
     friction: float
     area: float
-    peak: float
     mean_pressure: float
     plastic_share: float
 
@@ -87,9 +86,8 @@ class Point:
 
 def hard(scene: rf.Scene) -> rf.Scene:
     """The scene with the hardness of section 8 on its lower body, the copper."""
-    return replace(
-        scene, lower=rf.Body(replace(scene.lower.material, hardness=HARDNESS), scene.lower.surface)
-    )
+    copper = replace(scene.lower.material, hardness=HARDNESS)
+    return replace(scene, lower=rf.Body(copper, scene.lower.surface))
 
 
 def solved(scene: rf.Scene, mesh: int, model: Model) -> Found:
@@ -98,7 +96,7 @@ def solved(scene: rf.Scene, mesh: int, model: Model) -> Found:
     if not s.converged:
         raise RuntimeError(f"{model} contact on {mesh} elements: {s.status.value}")
     mean = s.normal_force / s.contact_area
-    return Found(s.friction_coefficient, s.contact_area, s.max_pressure, mean, s.plastic_share)
+    return Found(s.friction_coefficient, s.contact_area, mean, s.plastic_share)
 
 
 def point(load: float, flat_rms: float, mesh: int, realisations: int) -> Point:

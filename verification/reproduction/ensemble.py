@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -49,11 +49,26 @@ def estimate(values: Sequence[float]) -> Estimate:
     return Estimate(mean, float(half), deviation / abs(mean) if mean else np.inf, len(v))
 
 
-def reduced(study: Study, realisations: int, **vary: Iterable[float]) -> Study:
-    """The study with fewer realisations and other values on some axes: the quick tier's."""
-    return replace(
-        study, realisations=realisations, vary={**study.vary, **{k: tuple(v) for k, v in vary.items()}}
-    )
+QUICK_MESH = 128
+QUICK: Mapping[str, tuple[int, Mapping[str, Iterable[float]]]] = {
+    "table3": (6, {}),
+    "beta0": (6, {}),
+    "fig8": (3, {"lower_rms": (0.0, 0.252e-6, 0.504e-6, 1.008e-6, 1.680e-6)}),
+    "fig9": (1, {"sliding_direction": (0.0, np.pi / 2), "sliding_offset": [k * 50e-6 for k in range(8)]}),
+    "fig10": (1, {"lower_rms": (0.504e-6, 1.680e-6), "sliding_direction": np.radians(range(0, 360, 60))}),
+    "slide": (1, {"sliding_offset": [k * 100e-6 for k in range(16)]}),
+}
+"""The quick tier's part of each shipped study: realisations, and values on some axes."""
+
+
+@cache
+def rows_at(tier: str, name: str) -> tuple[Row, ...]:
+    """All rows of a shipped study, or in the quick tier those of its part on `QUICK_MESH` elements a side."""
+    if tier == "full":
+        return rows_of(name)
+    study, (realisations, vary) = read_study(name), QUICK[name]
+    part = {"grid": (QUICK_MESH,)} | {axis: tuple(map(float, values)) for axis, values in vary.items()}
+    return rows(replace(study, realisations=realisations, vary={**study.vary, **part}))
 
 
 @cache

@@ -13,8 +13,7 @@ from dataclasses import dataclass
 import refimpl as rf
 from refimpl.model.forces import plasticity_index
 from refimpl.model.friction import friction_coefficient_at
-from verification.reproduction import table3
-from verification.reproduction.ensemble import column, estimate
+from verification.reproduction.ensemble import column, estimate, rows_at
 from verification.reproduction.printed import (
     CORRELATION_LENGTH,
     CRITICAL_RMS,
@@ -81,7 +80,7 @@ def _plasticity_misfit(length: float) -> float:
 
 def _ours(quantity: str, flat_rms: float) -> float:
     """Mean of six realisations at 128 x 128."""
-    return estimate(column(table3.quick_rows(), quantity, lower_rms=flat_rms)).mean
+    return estimate(column(rows_at("quick", "table3"), quantity, lower_rms=flat_rms)).mean
 
 
 def _limit_misfit(*, elastic: bool) -> float:

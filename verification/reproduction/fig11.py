@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import jarque_bera, kstat, kurtosis, skew, ttest_1samp
+from scipy.stats import kurtosis, skew, ttest_1samp
 
 import refimpl as rf
 from refimpl.grid import Array
@@ -22,9 +21,8 @@ BINS = 40
 class Panel:
     """One distribution: pooled histogram, and moments estimated with each realisation as one observation.
 
-    Points of one surface are correlated, so a test that takes them as independent rejects too much: that
-    naive test's statistic is kept (``jarque_bera``, of one realisation) beside the sound ones, p values of
-    Student's t over realisations that the mean skewness is 0 and the mean kurtosis 3.
+    Points of one surface are correlated, so a test that takes them as independent rejects too much: the p
+    values are of Student's t over realisations, that the mean skewness is 0 and the mean kurtosis 3.
     """
 
     name: str
@@ -34,7 +32,6 @@ class Panel:
     kurtosis: Estimate
     p_skewness: float
     p_kurtosis: float
-    jarque_bera: float
 
 
 def samples(realisation: int, grid: int) -> tuple[Array, Array, Array, Array]:
@@ -59,29 +56,13 @@ def samples(realisation: int, grid: int) -> tuple[Array, Array, Array, Array]:
 
 def panels(realisations: int, grid: int) -> list[Panel]:
     """The four distributions over realisations."""
-    found = [samples(k, grid) for k in range(realisations)]
-    return list(_panels(found))
-
-
-def _panels(found: list[tuple[Array, Array, Array, Array]]) -> Iterator[Panel]:
+    found, result = [samples(k, grid) for k in range(realisations)], []
     for name, parts in zip(PANELS, zip(*found, strict=True), strict=True):
         pooled = np.concatenate([part - part.mean() for part in parts])
         density, edges = np.histogram(pooled, BINS, density=True)
         skews = [float(skew(part)) for part in parts]
         tails = [float(kurtosis(part, fisher=False)) for part in parts]
-        yield Panel(
-            name=name,
-            centres=(edges[1:] + edges[:-1]) / 2,
-            density=density,
-            skewness=estimate(skews),
-            kurtosis=estimate(tails),
-            p_skewness=float(ttest_1samp(skews, 0.0).pvalue),
-            p_kurtosis=float(ttest_1samp(tails, 3.0).pvalue),
-            jarque_bera=float(jarque_bera(parts[0]).statistic),
-        )
-
-
-def pooled_skewness(found: list[Array]) -> float:
-    """Skewness of all realisations' points together, each about its own mean, by k statistics."""
-    pooled = np.concatenate([part - part.mean() for part in found])
-    return float(kstat(pooled, 3) / kstat(pooled, 2) ** 1.5)
+        p_values = (float(ttest_1samp(v, mean).pvalue) for v, mean in ((skews, 0.0), (tails, 3.0)))
+        middle = (edges[1:] + edges[:-1]) / 2
+        result.append(Panel(name, middle, density, estimate(skews), estimate(tails), *p_values))
+    return result

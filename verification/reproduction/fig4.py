@@ -44,20 +44,10 @@ def measured(realisations: int, grid: int) -> Statistics:
     for k in range(realisations):
         z = surface(k, grid)
         radius = statistics.correlation_length(z, h)
-        slope_x, slope_y = statistics.slopes(z, h)
-        gradient = np.hypot(slope_x, slope_y)
+        gradient = np.hypot(*statistics.slopes(z, h))
         rms = math.sqrt(float(np.mean(gradient**2)) / 2)
-        largest = float(gradient.max())
-        found.append(
-            (
-                statistics.skewness(z),
-                statistics.kurtosis(z),
-                math.nan if radius is None else radius,
-                rms,
-                float(gradient.mean()),
-                largest,
-            )
-        )
+        moments = statistics.skewness(z), statistics.kurtosis(z), math.nan if radius is None else radius
+        found.append((*moments, rms, float(gradient.mean()), float(gradient.max())))
     *others, steepest = zip(*found, strict=True)
     skewness, kurtosis, length, slope, mean_gradient = (estimate(values) for values in others)
     return Statistics(skewness, kurtosis, length, slope, mean_gradient, estimate(steepest), min(steepest))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache
 
 import numpy as np
 from scipy.stats import t as student
@@ -24,8 +23,7 @@ class Profile:
     """Pressures (Pa) by annuli about the axis: mean over azimuth and realisations, with its 95 % half width.
 
     ``greenwood_tripp`` has the summits of Eq. (9); ``textbook`` the caption's alpha and Johnson's mu = 4.
-    ``outside`` is the share of the load beyond the Hertz radius, one value per realisation; ``peak`` the
-    largest local pressure; ``contact_area`` in m^2.
+    ``outside`` is the share of the load beyond the Hertz radius, one value per realisation.
     """
 
     r: Array
@@ -35,8 +33,6 @@ class Profile:
     textbook: Array
     hertz: Array
     outside: Array
-    peak: Array
-    contact_area: Array
 
     def misfit(self, theory: Array) -> float:
         """Rms difference from a theory, weighted by area, over Hertz' peak."""
@@ -92,7 +88,6 @@ def textbook(rms: float, mu: float = 4.0) -> gt.RoughSphere:
     return replace(summits(rms), summit_rms=rms, summit_density=float(density))
 
 
-@cache
 def contact(rms: float, realisation: int, grid: int) -> rf.Solution:
     """Frictionless contact with all the roughness on the flat, slopes neglected ("tips of asperities")."""
     scene = rough(rms, realisation=realisation, friction=NO_FRICTION)
@@ -108,14 +103,11 @@ def effective_pressure(rms: float, realisations: int, grid: int) -> Profile:
     inside = ring < rings
     count = np.bincount(ring[inside], minlength=rings)
     radius = np.bincount(ring[inside], distance[inside], rings) / count
-    means, outside, peak, area = [], [], [], []
+    means, outside, beyond = [], [], distance > hertz().contact_radius
     for k in range(realisations):
-        found = contact.__wrapped__(rms, k, grid)
-        means.append(np.bincount(ring[inside], found.pressure[inside], rings) / count)
-        beyond = distance > hertz().contact_radius
-        outside.append(found.pressure[beyond].sum() / found.pressure.sum())
-        peak.append(found.max_pressure)
-        area.append(found.contact_area)
+        pressure = contact(rms, k, grid).pressure
+        means.append(np.bincount(ring[inside], pressure[inside], rings) / count)
+        outside.append(pressure[beyond].sum() / pressure.sum())
     pressure, theory = np.array(means), gt.solve(summits(rms))
     factor = student.ppf((1 + CONFIDENCE) / 2, realisations - 1) / np.sqrt(realisations)
     return Profile(
@@ -126,8 +118,6 @@ def effective_pressure(rms: float, realisations: int, grid: int) -> Profile:
         textbook=gt.solve(textbook(rms)).at(radius),
         hertz=np.array([_ring_mean(k) for k in range(rings)]),
         outside=np.array(outside),
-        peak=np.array(peak),
-        contact_area=np.array(area),
     )
 
 

@@ -12,14 +12,10 @@ from scipy.optimize import curve_fit
 import refimpl as rf
 from refimpl.grid import Array
 from refimpl.model.forces import plasticity_index
-from verification.reproduction.ensemble import column, estimate, reduced, rows, rows_of
+from verification.reproduction.ensemble import QUICK_MESH, column, estimate, rows_at
 from verification.reproduction.printed import CORRELATION_LENGTH, HARDNESS, LOADS, SPHERE_RMS
 from verification.reproduction.table1 import SMOOTH, rough
 from verification.sweep.run import Row
-from verification.sweep.study_file import read_study
-
-QUICK_REALISATIONS, QUICK_MESH = 3, 128
-QUICK_RMS = (0.0, 0.252e-6, 0.504e-6, 1.008e-6, 1.680e-6)  # m
 
 
 @dataclass(frozen=True)
@@ -55,21 +51,10 @@ def plasticity(rms: Array, length: float = CORRELATION_LENGTH) -> Array:
 
 
 @cache
-def full_curves() -> tuple[Curve, ...]:
-    """The shipped study."""
-    return curves(rows_of("fig8"), 256)
-
-
-@cache
-def quick_curves() -> tuple[Curve, ...]:
-    """Three realisations of five roughnesses at 128 x 128."""
-    study = reduced(read_study("fig8"), QUICK_REALISATIONS, grid=(QUICK_MESH,), lower_rms=QUICK_RMS)
-    return curves(rows(study), QUICK_MESH)
-
-
-def curves(found: Sequence[Row], mesh: int) -> tuple[Curve, ...]:
-    """One curve per load."""
-    return tuple(_curve(found, load, mesh) for load in LOADS)
+def curves(tier: str) -> tuple[Curve, ...]:
+    """One curve per load, of the shipped study or its quick part."""
+    mesh = 256 if tier == "full" else QUICK_MESH
+    return tuple(_curve(rows_at(tier, "fig8"), load, mesh) for load in LOADS)
 
 
 def _curve(found: Sequence[Row], load: float, mesh: int) -> Curve:
@@ -88,13 +73,12 @@ def _curve(found: Sequence[Row], load: float, mesh: int) -> Curve:
 
 @dataclass(frozen=True)
 class Decay:
-    """Misfits (rms, relative to the fall over the range) of ``mu - limit`` falling as an exponential, as a
-    hyperbola ``1 / (1 + sigma / scale)`` and as ``1 / (1 + (sigma / scale)^1.5)``, and what the exponential
-    says: its limit, its scale (m), and how far the means lie from it at most, in standard errors.
+    """Misfits (rms, relative to the fall over the range) of ``mu - limit`` falling as an exponential and as
+    ``1 / (1 + (sigma / scale)^1.5)``; limit and scale (m) of the exponential, and the largest distance of
+    the means from it, in standard errors.
     """
 
     exponential: float
-    hyperbolic: float
     algebraic: float
     limit: float
     scale: float
@@ -108,25 +92,19 @@ def decay(curve: Curve) -> Decay:
     def exponential(s: Array, limit: float, height: float, scale: float) -> Array:
         return np.asarray(limit + height * np.exp(-s / scale))
 
-    def hyperbola(s: Array, limit: float, height: float, scale: float) -> Array:
-        return np.asarray(limit + height / (1 + s / scale))
-
     def algebraic(s: Array, limit: float, height: float, scale: float) -> Array:
         return np.asarray(limit + height / (1 + (s / scale) ** 1.5))
 
     start = (float(curve.friction[-1]), fall, 0.2)
     bounds = ((0.0, 0.0, 1e-3), (1.0, 10.0, 10.0))
-    fits = {
-        law: curve_fit(law, x, curve.friction, start, bounds=bounds)[0]
-        for law in (exponential, hyperbola, algebraic)
-    }
+    laws = (exponential, algebraic)
+    fits = {law: curve_fit(law, x, curve.friction, start, bounds=bounds)[0] for law in laws}
     misfits = {law: float(np.sqrt(np.mean((law(x, *p) - curve.friction) ** 2))) for law, p in fits.items()}
     limit, _, scale = fits[exponential]
     rough = curve.friction_half > 0
     missed = np.abs(exponential(x, *fits[exponential]) - curve.friction)[rough]
     return Decay(
         exponential=misfits[exponential] / fall,
-        hyperbolic=misfits[hyperbola] / fall,
         algebraic=misfits[algebraic] / fall,
         limit=float(limit),
         scale=float(scale) * 1e-6,

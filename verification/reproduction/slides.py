@@ -4,69 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 
 from refimpl.grid import Array
-from verification.reproduction.ensemble import reduced, rows, rows_of
 from verification.sweep.run import Row
-from verification.sweep.study_file import read_study
-
-QUICK_MESH = 128
-QUICK_OFFSETS = tuple(k * 50e-6 for k in range(8))  # m
-QUICK_DIRECTIONS = tuple(float(a) for a in np.radians([0, 60, 120, 180, 240, 300]))
-
-
-@cache
-def full_fig9() -> tuple[Row, ...]:
-    """Twelve directions, seventeen offsets."""
-    return rows_of("fig9")
-
-
-@cache
-def quick_fig9() -> tuple[Row, ...]:
-    """Two directions, eight offsets, at 128 x 128."""
-    study = reduced(
-        read_study("fig9"),
-        1,
-        grid=(QUICK_MESH,),
-        sliding_direction=(0.0, float(np.pi / 2)),
-        sliding_offset=QUICK_OFFSETS,
-    )
-    return rows(study)
-
-
-@cache
-def full_fig10() -> tuple[Row, ...]:
-    """Twenty-four directions, four roughnesses, six realisations."""
-    return rows_of("fig10")
-
-
-@cache
-def quick_fig10() -> tuple[Row, ...]:
-    """Six directions, two roughnesses, one realisation, at 128 x 128."""
-    study = reduced(
-        read_study("fig10"),
-        1,
-        grid=(QUICK_MESH,),
-        lower_rms=(0.504e-6, 1.680e-6),
-        sliding_direction=QUICK_DIRECTIONS,
-    )
-    return rows(study)
-
-
-@cache
-def full_slide() -> tuple[Row, ...]:
-    """4 mm along x in steps of 25 um."""
-    return rows_of("slide")
-
-
-@cache
-def quick_slide() -> tuple[Row, ...]:
-    """1.5 mm in steps of 100 um at 128 x 128."""
-    offsets = tuple(k * 100e-6 for k in range(16))
-    return rows(reduced(read_study("slide"), 1, grid=(QUICK_MESH,), sliding_offset=offsets))
 
 
 @dataclass(frozen=True)

@@ -6,17 +6,15 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import product
 
 import refimpl as rf
-from verification.reproduction.ensemble import Estimate, column, estimate, reduced, rows, rows_of
+from verification.reproduction.ensemble import Estimate, column, estimate
 from verification.reproduction.printed import MESHES, TABLE3, Column
 from verification.reproduction.table1 import SMOOTH
 from verification.sweep.run import Row
-from verification.sweep.study_file import read_study
 
 QUANTITIES = ("contact_area", "friction_coefficient", "max_pressure")
-UNITS = {"contact_area": "m^2", "friction_coefficient": "", "max_pressure": "Pa"}
-QUICK_REALISATIONS, QUICK_MESH = 6, 128
 
 
 @dataclass(frozen=True)
@@ -40,19 +38,6 @@ class Cell:
 
 
 @cache
-def full_rows() -> tuple[Row, ...]:
-    """The ensemble as in the paper: 75 realisations on three meshes."""
-    return rows_of("table3")
-
-
-@cache
-def quick_rows() -> tuple[Row, ...]:
-    """Six realisations on the coarsest mesh."""
-    study = reduced(read_study("table3"), QUICK_REALISATIONS, grid=(QUICK_MESH,))
-    return rows(study)
-
-
-@cache
 def smooth(mesh: int) -> rf.Solution:
     """The smooth column's contact."""
     return rf.solve(SMOOTH, mesh)
@@ -61,14 +46,8 @@ def smooth(mesh: int) -> rf.Solution:
 def cells(found: Sequence[Row], quantity: str, meshes: Sequence[int] = MESHES) -> list[Cell]:
     """The table's row of one quantity: all columns, mesh after mesh."""
     return [
-        Cell(
-            printed,
-            mesh,
-            getattr(printed, quantity)[MESHES.index(mesh)],
-            _ours(found, printed, quantity, mesh),
-        )
-        for printed in TABLE3
-        for mesh in meshes
+        Cell(row, mesh, getattr(row, quantity)[MESHES.index(mesh)], _ours(found, row, quantity, mesh))
+        for row, mesh in product(TABLE3, meshes)
     ]
 
 
@@ -86,7 +65,6 @@ def series(table: Sequence[Cell]) -> dict[str, list[float]]:
         "printed": [cell.printed for cell in table],
         "ours": [cell.ours.mean for cell in table],
         "half width 95 %": [cell.ours.half_width for cell in table],
-        "scatter of one realisation": [cell.ours.scatter for cell in table],
         "realisations": [cell.ours.n for cell in table],
         "deviation": [cell.deviation for cell in table],
     }

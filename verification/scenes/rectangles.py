@@ -28,37 +28,22 @@ def rectangles() -> tuple[Trial, ...]:
         Trial("coupled", "strong coupling on oblong elements", soft, (36, 18)),
         Trial("rigid", "a rigid ball", pressed(upper=rigid, lower=POLYMER, load=2.0, size=half), (40, 20)),
         Trial("strip", "60 x 5 elements, sliding along", strip, (60, 5)),
-        Trial(
-            "strip-across", "sliding across", replace(strip, sliding_direction=1.5707963267948966), (60, 5)
-        ),
+        Trial("strip-across", "sliding across",
+              replace(strip, sliding_direction=1.5707963267948966), (60, 5)),
         Trial("line", "one element wide", replace(strip, size=(60e-5, 1e-5), load=0.02), (60, 1)),
         Trial("near-full", "pressed nearly flat", replace(plane, load=5.0), (20, 24)),
         Trial("periodic", "rough planes, oblong elements", repeated, (40, 33)),
         Trial("periodic-askew", "sliding askew", replace(repeated, sliding_direction=2.0), (24, 36)),
-        Trial(
-            "near-full-periodic",
-            "periodic plane pressed nearly flat",
-            replace(plane, load=1.9, periodic=True),
-            (32, 16),
-        ),
+        Trial("near-full-periodic", "periodic plane pressed nearly flat",
+              replace(plane, load=1.9, periodic=True), (32, 16)),
         Trial("approach", "prescribed approach", pressed(size=double), (40, 30), {"approach": 1.5e-6}),
-        Trial(
-            "approach-periodic", "approach from the mean planes", repeated, (27, 18), {"approach": -0.9e-6}
-        ),
-        Trial(
-            "slope-correction",
-            "exact facet tractions",
-            pressed(direction=0.7, rms=1.68e-6, lower=POLYMER, load=5.0, size=double),
-            (40, 18),
-            {"slope_correction": True},
-        ),
-        Trial(
-            "frictionless",
-            "no shear at all",
-            pressed(friction=rf.Friction(), size=half, upper=STEEL, lower=COPPER),
-            (32, 36),
-        ),
-        Trial(
-            "slid", "the lower body half a wave on", pressed(offset=50e-6, size=half, direction=0.7), (28, 20)
-        ),
-    )
+        Trial("approach-periodic", "approach from the mean planes",
+              repeated, (27, 18), {"approach": -0.9e-6}),
+        Trial("slope-correction", "exact facet tractions",
+              pressed(direction=0.7, rms=1.68e-6, lower=POLYMER, load=5.0, size=double),
+              (40, 18), {"slope_correction": True}),
+        Trial("frictionless", "no shear at all",
+              pressed(friction=rf.Friction(), size=half, upper=STEEL, lower=COPPER), (32, 36)),
+        Trial("slid", "the lower body half a wave on",
+              pressed(offset=50e-6, size=half, direction=0.7), (28, 20)),
+    )  # fmt: skip

@@ -17,7 +17,7 @@ from scipy.signal import fftconvolve
 
 from refimpl.grid import Array, Grid, Mask
 from verification.exact.fourier import symbol_at
-from verification.properties.textbook import normal_matrix, normal_offsets, shear_matrix, shear_offsets
+from verification.exact.textbook import normal_matrix, normal_offsets, shear_matrix, shear_offsets
 from verification.solver_suite.protocol import ContactProblem
 
 LARGEST = 32

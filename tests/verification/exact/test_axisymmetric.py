@@ -33,9 +33,8 @@ def test_hertz_pressure_bends_the_surface_as_stated(rho: float) -> None:
         assert float(contact.displacement(r)) + r**2 / 0.28 == pytest.approx(contact.approach, rel=1e-13)
 
 
-def test_an_ellipse_agrees_with_legendre_integrals_and_flattens_its_paraboloid() -> None:
+def test_an_ellipse_flattens_its_paraboloid() -> None:
     contact = hertz.Ellipse(LOAD, 3.0, 11.0, MODULUS)
-    assert contact.semi_axes == pytest.approx(hertz.ellipse_by_legendre(LOAD, 3.0, 11.0, MODULUS), rel=1e-12)
     a, b = contact.semi_axes
     angle = np.linspace(0, 2 * np.pi, 16)
     x, y = 0.8 * a * np.cos(angle), 0.8 * b * np.sin(angle)
@@ -151,7 +150,7 @@ def test_circular_punch_is_flat_inside(rho: float) -> None:
 def test_circular_punch_pressure_carries_the_load() -> None:
     flat = punch.CircularPunch(LOAD, 1e-3, MODULUS)
     inner = quad(lambda s: 2 * np.pi * s * flat.pressure(s), 0, 0.9e-3)[0]
-    assert inner == pytest.approx(float(flat.load_within(0.9e-3)), rel=1e-12)
+    assert inner == pytest.approx(LOAD * (1 - np.sqrt(1 - 0.9**2)), rel=1e-12)
     assert np.isinf(flat.pressure(1e-3))
     assert float(flat.pressure(1.01e-3)) == 0.0
 
@@ -165,13 +164,6 @@ def test_square_capacitance_extrapolates_to_the_reference() -> None:
     # from 6, 12, 24 the extrapolation still misses 1e-6; see UNCERTAINTY_SQUARE for the finer series
     assert limit == pytest.approx(punch.UNIT_SQUARE_CAPACITANCE, rel=5e-6)
     assert abs(punch.PUBLISHED_CAPACITANCE / punch.UNIT_SQUARE_CAPACITANCE - 1) < punch.UNCERTAINTY_SQUARE
-
-
-def test_square_capacitance_stays_above_thomson_bound() -> None:
-    bounds = [punch.square_capacitance_bound(n, gauss=6) for n in (4, 8, 12)]
-    assert bounds[0] < bounds[1] < bounds[2] < punch.UNIT_SQUARE_CAPACITANCE
-    # at n = 12 the bound is 0.366758: within 1e-4 of the value it bounds
-    assert bounds[2] == pytest.approx(punch.UNIT_SQUARE_CAPACITANCE, rel=1e-4)
 
 
 def test_a_disc_in_the_square_and_around_it_bracket_its_stiffness() -> None:

@@ -76,7 +76,6 @@ def test_sliding_cylinder_load_centroid_and_width() -> None:
     assert load == pytest.approx(1e5, rel=1e-7)
     assert first / load == pytest.approx(contact.pressure_centroid, rel=1e-6)
     assert contact.half_width > cylinder(beta=0.0).half_width
-    assert 0 < contact.idle_width < 1e-2 * contact.half_width
 
 
 def wave(tau: float = 0.0, beta: float = 0.8, coupling: float = 0.4, mean: float = 0.3) -> SlidingWave:
@@ -90,15 +89,6 @@ def test_sliding_wave_satisfies_its_integral_equation(tau: float) -> None:
     for share in (0.03, 0.4, 0.9):
         assert sliding_wave.principal_value_residual(contact, low + share * (high - low)) < 1e-14
     assert quad(contact.pressure, low, high)[0] == pytest.approx(0.3, rel=1e-7)
-
-
-@pytest.mark.parametrize("tau", [0.0, 0.05])
-def test_sliding_wave_is_flat_by_fourier_series(tau: float) -> None:
-    contact = wave(tau)
-    low, high = contact.edges
-    x = low + np.array([0.1, 0.3, 0.5, 0.7, 0.9]) * (high - low)
-    # 512 waves: the cut series leaves 3.4e-7 of the amplitude (measured; 1e-9 at 4096)
-    assert np.ptp(sliding_wave.flatness(contact, x, terms=512)) < 5e-7 * UNIT
 
 
 def test_sliding_wave_without_coupling_is_westergaard() -> None:

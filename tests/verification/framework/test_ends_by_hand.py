@@ -1,4 +1,4 @@
-"""Both ends of what the framework judges by: uncertainties, counts, orders, and the mode of files."""
+"""Both ends of what the framework judges by: uncertainties, counts and the mode of files."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ import pytest
 from verification.framework import provenance, registry, runner, workers
 from verification.framework.case import Case, Measured, Metric, Result, Status, Tier
 from verification.framework.files import write_text
-from verification.framework.rates import extrapolate
 from verification.framework.registry import select
 from verification.framework.runner import Run
 from verification.framework.verdict import Verdict, judged
@@ -71,44 +70,6 @@ def test_a_verdict_keeps_its_numbers() -> None:
     )
     data = {"verdict": "not confirmed", "h": [1]}
     assert found == Measured(2.5, 2.0, 0.125, "N", data, "not confirmed: so")
-
-
-def test_an_exact_series_has_the_uncertainty_of_its_last_step() -> None:
-    """1 + h^2 at h = 0.4, 0.2, 0.1: 1.25 times 0.01."""
-    found = extrapolate([0.4, 0.2, 0.1], [1.16, 1.04, 1.01], 2.0)
-    assert found.uncertainty == pytest.approx(0.0125)
-    assert found.credible
-
-
-def test_a_misfit_counts_as_uncertainty() -> None:
-    """1 + h + noise of -e, 2e, -e, 0: a fit of order 1 leaves what is not on its line."""
-    h, e = [0.8, 0.4, 0.2, 0.1], 1e-3
-    values = [1 + a + s * e for a, s in zip(h, (0, 0, 4, -4), strict=True)]
-    found = extrapolate(h, values, 1.0)
-    assert found.credible
-    limit, slope = found.extrapolated, (1.1 - 4 * e - found.extrapolated)
-    assert found.uncertainty > 1.25 * abs(slope)
-    assert abs(limit - 1.0) < found.uncertainty
-
-
-def test_an_order_higher_than_expected_does_not_shorten_the_uncertainty() -> None:
-    """Order 2.4 where 2 is expected: the correction of the best fit of order 2 is larger."""
-    h = [0.4, 0.2, 0.1]
-    found = extrapolate(h, [1 + a**2.4 for a in h], 2.0)
-    assert found.credible
-    assert found.order == pytest.approx(2.4)
-    exact = 0.1**2.4
-    assert found.uncertainty > 1.5 * 1.25 * exact
-
-
-def test_local_orders_far_off_are_not_credible() -> None:
-    """Orders of about 1.3 and 3 fit 2 in the mean; the range of the values, 0.9, times 3 is left."""
-    h = [0.8, 0.4, 0.2, 0.1]
-    values = [1.0, 0.35, 0.12, 0.1]
-    found = extrapolate(h, values, 2.0)
-    assert any(abs(p - 2.0) > 0.5 for p in found.local)
-    assert not found.credible
-    assert found.uncertainty == pytest.approx(3 * 0.9)
 
 
 def test_a_replaced_file_keeps_its_mode(tmp_path: Path) -> None:

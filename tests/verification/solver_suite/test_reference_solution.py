@@ -16,7 +16,7 @@ from refimpl.model.slopes import Slopes
 from refimpl.scene.discretise import discretise
 from verification.exact.dense_influence import DenseInfluence
 from verification.exact.kernel_reference import normal, tangential
-from verification.properties.textbook import normal_offsets, shear_offsets
+from verification.exact.textbook import normal_offsets, shear_offsets
 from verification.solver_suite import own, reference_solution
 from verification.solver_suite.check import COMPLIANCE, MODULUS
 from verification.solver_suite.gaps import rough_bump

@@ -166,7 +166,6 @@ def test_turning_keeps_realisations_and_directions_apart() -> None:
 RMS = np.linspace(0, 1.7e-6, 8)
 LAWS = {
     "exponential": np.exp(-RMS / 0.25e-6),
-    "hyperbolic": 1 / (1 + RMS / 0.25e-6),
     "algebraic": 1 / (1 + (RMS / 0.25e-6) ** 1.5),
 }
 

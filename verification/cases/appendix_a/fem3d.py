@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cache
 from importlib.resources import as_file, files
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +15,7 @@ from appendix_a.fem3d.patch import normal_coefficient, tilted_plane
 from appendix_a.fem3d.surface import X, Y, flat_sample, sample
 from appendix_a.fem3d.table import Series, Table3D
 from appendix_a.fem3d.wavy import Kind, Waviness
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.cases import Measured, case
 
 Array = NDArray[np.float64]
 NU, WAVELENGTH, SLOPE = 0.3, 20.0, 10.0
@@ -39,10 +38,10 @@ def flank(nu: float) -> Coefficients3D:
     return coefficients(SLOPE, WAVELENGTH, FLANK, nu)
 
 
-def flat_errors(levels: Sequence[int] = LEVELS) -> list[Array]:
-    """Finite element over exact minus one (10,), mesh by mesh."""
-    exact = normal_coefficient(X, Y, NU)
-    return [flat_sample(WAVELENGTH, Kind.RIDGE, NU, NEAR, n).down / exact - 1 for n in levels]
+def flat_error(level: int) -> Array:
+    """Finite element over exact minus one (10,) on one mesh."""
+    sampled = flat_sample(WAVELENGTH, Kind.RIDGE, NU, NEAR, level).down
+    return np.asarray(sampled / normal_coefficient(X, Y, NU) - 1)
 
 
 @case("fem3d/flat", metric="at_most", tolerance=2e-3)
@@ -53,10 +52,8 @@ def flat_boundary() -> Measured:
     Source: Love 1929; Johnson 1985, 3.2
     Tolerance: required of the flat boundary in 3-D; this middle mesh leaves 1.4e-3, the finest 2e-4
     """
-    errors = flat_errors(LEVELS[:2])
-    levels = {f"level {n}": e.tolist() for n, e in zip(LEVELS, errors, strict=False)}
-    data = {"coefficient": list(LABELS), **levels}
-    return Measured(value=float(np.abs(errors[-1]).max()), data=data)
+    error = flat_error(LEVELS[1])
+    return Measured(value=float(np.abs(error).max()), data=dict(zip(LABELS, error.tolist(), strict=True)))
 
 
 @case("fem3d/one-point", metric="at_most", tolerance=2e-3)
@@ -70,8 +67,7 @@ def one_point() -> Measured:
     tabulated = shipped().error(Series(WAVELENGTH, FLANK, NU), SLOPE)
     wavy = sample(ridge(SLOPE), NU, NEAR, 2).down
     fresh = (wavy - flat_sample(WAVELENGTH, Kind.RIDGE, NU, NEAR, 2).down) / normal_coefficient(X, Y, NU)
-    data = {"coefficient": list(LABELS), "table": tabulated.tolist(), "one mesh": fresh.tolist()}
-    return Measured(value=float(np.abs(fresh - tabulated).max()), data=data)
+    return Measured(value=float(np.abs(fresh - tabulated).max()))
 
 
 @case("fem3d/flat-order", metric="at_least", tolerance=3.0, tier="full")
@@ -82,10 +78,9 @@ def flat_order() -> Measured:
     Source: refinement by 2 and 3 of one mesh
     Tolerance: the order used to extrapolate; the jump of pressure limits it; measured 3.8 and 5.1
     """
-    errors = np.abs([e[0] for e in flat_errors()])
+    errors = np.abs([flat_error(level)[0] for level in LEVELS])
     orders = np.log(errors[:-1] / errors[1:]) / np.log([2.0, 1.5])
-    data = {"self error": errors.tolist(), "orders": orders.tolist()}
-    return Measured(value=float(orders.min()), data=data)
+    return Measured(value=float(orders.min()), data={"orders": orders.tolist()})
 
 
 @case("fem3d/flank-uncertainty", metric="at_most", tolerance=2e-3, tier="full", source=SOURCE)
@@ -96,16 +91,8 @@ def flank_uncertainty() -> Measured:
     Tolerance: 0.2 percentage points of the flat coefficient, as asked in 3-D; measured 3e-4
     """
     result = flank(NU)
-    data = {
-        "coefficient": list(LABELS),
-        "error": result.error.tolist(),
-        "discretisation": result.discretisation.tolist(),
-        "truncation": result.truncation.tolist(),
-        "first order": (first_order(ridge(SLOPE), X, Y, NU) / result.flat).tolist(),
-        "residual": result.residual,
-        "elements": result.elements,
-    }
-    return Measured(value=float(result.uncertainty.max()), data=data)
+    data = {name: getattr(result, name).tolist() for name in ("error", "discretisation", "truncation")}
+    return Measured(value=float(result.uncertainty.max()), data={"coefficient": list(LABELS), **data})
 
 
 @case("fem3d/correction", metric="at_least", tolerance=5.0, tier="full")
@@ -116,21 +103,14 @@ def correction() -> Measured:
     Source: exact tractions of a facet; {SOURCE}
     Tolerance: required of the correction; measured 33, 11 and 8 at 1, 2 and 3 elements
     """
-    return correction_drop(NU)
+    return smallest_drop(NU, corrected(flank(NU), ridge(SLOPE), NU).antisymmetric)
 
 
-def correction_drop(nu: float) -> Measured:
-    """Smallest quotient of antisymmetric errors without and with the correction, over three neighbours."""
-    plain, cured = flank(nu).antisymmetric, corrected(flank(nu), ridge(SLOPE), nu).antisymmetric
-    rest = (far_part(ridge(SLOPE), X, Y, nu) / flank(nu).flat)[1:4]
-    data = {
-        "elements away": [1, 2, 3],
-        "without": plain.tolist(),
-        "with": cured.tolist(),
-        "first-order part that grows with the offset": rest.tolist(),
-        "with, and without that part": (cured - rest).tolist(),
-    }
-    return Measured(value=float(np.abs(plain / cured).min()), data=data)
+def smallest_drop(nu: float, left: Array) -> Measured:
+    """Smallest quotient of the antisymmetric errors at 1, 2 and 3 elements and of what is left of them."""
+    plain = flank(nu).antisymmetric
+    data = {"elements away": [1, 2, 3], "without": plain.tolist(), "with": left.tolist()}
+    return Measured(value=float(np.abs(plain / left).min()), data=data)
 
 
 @case("fem3d/correction-and-growth", metric="at_least", tolerance=5.0, tier="full")
@@ -141,11 +121,8 @@ def correction_and_growth() -> Measured:
     Source: appendix_a.fem3d.leading_order; {SOURCE}
     Tolerance: required of the first-order part; the correction alone reaches 9, 4.3 and 3.6 here
     """
-    plain = flank(0.0).antisymmetric
-    alone = correction_drop(0.0)
-    left = np.asarray(alone.data["with, and without that part"])
-    data = {**alone.data, "drop by the correction alone": alone.value}
-    return Measured(value=float(np.abs(plain / left).min()), data=data)
+    grows = (far_part(ridge(SLOPE), X, Y, 0.0) / flank(0.0).flat)[1:4]
+    return smallest_drop(0.0, corrected(flank(0.0), ridge(SLOPE), 0.0).antisymmetric - grows)
 
 
 def ridge(slope: float, position: float = FLANK) -> Waviness:
@@ -171,17 +148,12 @@ def first_order_theory() -> Measured:
     Source: appendix_a.fem3d.leading_order
     Tolerance: fraction of flat: mesh level 2 leaves 4e-5 at the next neighbours, third order 3e-6
     """
-    data: dict[str, object] = {"coefficient": list(LABELS)}
-    worst = 0.0
-    for kind in Kind:
-        for position in (0.0, 0.1, FLANK):
-            surface = Waviness(1.0, WAVELENGTH, position, kind)
-            theory = first_order(surface, X, Y, NU) / normal_coefficient(X, Y, NU)
-            measured = odd_part(surface, NU)
-            worst = max(worst, float(np.abs(measured - theory).max()))
-            data[f"{kind} at {position}: FEM"] = measured.tolist()
-            data[f"{kind} at {position}: theory"] = theory.tolist()
-    return Measured(value=worst, data=data)
+    off = {}
+    for kind, position in product(Kind, (0.0, 0.1, FLANK)):
+        surface = Waviness(1.0, WAVELENGTH, position, kind)
+        theory = first_order(surface, X, Y, NU) / normal_coefficient(X, Y, NU)
+        off[f"{kind} at {position}"] = float(np.abs(odd_part(surface, NU) - theory).max())
+    return Measured(value=max(off.values()), data={"largest difference": off})
 
 
 @case("fem3d/growth", metric="relative", tolerance=0.02, tier="full")
@@ -197,11 +169,7 @@ def growth_fit() -> Measured:
     measured = (odd_part(surface, nu) - facet_part(surface, X, Y, nu) / flat)[1:4]
     theory = (far_part(surface, X, Y, nu) / flat)[1:4]
     scale = float(measured @ theory / (theory @ theory))
-    data = {
-        "offset / wavelength": (X[1:4] / WAVELENGTH).tolist(),
-        "FEM": measured.tolist(),
-        "theory": theory.tolist(),
-    }
+    data = {"FEM": measured.tolist(), "theory": theory.tolist()}
     return Measured(value=scale * growth_coefficient(nu), reference=growth_coefficient(nu), data=data)
 
 
@@ -216,9 +184,7 @@ def tilted() -> Measured:
     result = coefficients(SLOPE, 100.0, FLANK, NU)
     plane = tilted_plane(X, Y, NU, SLOPE, projected=True) / result.flat - 1
     near = [0, 1, 4, 7]
-    gap = float(np.abs(result.error - plane)[near].max())
-    data = {"coefficient": list(LABELS), "error": result.error.tolist(), "plane": plane.tolist()}
-    return Measured(value=gap, data=data)
+    return Measured(value=float(np.abs(result.error - plane)[near].max()))
 
 
 @case("fem3d/stated-error", metric="at_most", tolerance=1.0, tier="full")
@@ -231,5 +197,4 @@ def stated_error() -> Measured:
     """
     quick, full = flank(NU), coefficients(SLOPE, WAVELENGTH, FLANK, NU, quality="full")
     change = np.abs(quick.error - full.error) / quick.uncertainty
-    data = {"coefficient": list(LABELS), "quick": quick.error.tolist(), "full": full.error.tolist()}
-    return Measured(value=float(change.max()), data={**data, "change over stated": change.tolist()})
+    return Measured(value=float(change.max()), data=dict(zip(LABELS, change.tolist(), strict=True)))

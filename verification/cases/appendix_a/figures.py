@@ -8,8 +8,7 @@ from appendix_a.fem.sinusoid import sinusoid
 from appendix_a.fem.wedge_fem import wedge_tip
 from appendix_a.strip import first_order, printed
 from appendix_a.wedge_tip import relative_difference
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.cases import Measured, case
 
 NU, WAVELENGTH = 0.3, 100.0
 OFFSETS = np.array([x for x in np.linspace(-12.0, 12.0, 49) if abs(x) >= 0.5])

@@ -8,11 +8,10 @@ import numpy as np
 
 from appendix_a.contact_fem.scene import Material, WavyPair
 from appendix_a.contact_fem.sequence import graded_plans, slide, slide_on_three_meshes
+from verification.cases import Measured, case, family
 from verification.cases.appendix_a import model_form_study as study
 from verification.exact.sliding_wave import SlidingWave
 from verification.exact.westergaard import Wave
-from verification.framework.case import Measured
-from verification.framework.registry import case, family
 
 METAL, COMPLIANT = (study.COPPER, study.STEEL, 0.08), (study.SOFT, study.STIFF, 0.2)
 LIGHT, MEDIUM = study.LOADS

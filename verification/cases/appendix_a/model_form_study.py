@@ -55,15 +55,12 @@ class Modelled:
 
 def scene_of(pair: WavyPair, load: float, M: int) -> rf.Scene:
     """The pair on M x M elements of one wavelength, constant along y; `load` per wavelength and thickness."""
-    x, across = (np.arange(M) + 0.5) / M - 0.5, np.ones(M)
-    return rf.Scene(
-        upper=rf.Body(rf.Material(pair.upper.E, pair.upper.nu), np.outer(pair.upper_height(x), across)),
-        lower=rf.Body(rf.Material(pair.lower.E, pair.lower.nu), np.outer(pair.lower_height(x), across)),
-        friction=rf.Friction(tau=pair.tau, beta=pair.beta),
-        load=load,
-        side=1.0,
-        periodic=True,
+    x = (np.arange(M) + 0.5) / M - 0.5
+    above, below = (
+        rf.Body(rf.Material(body.E, body.nu), np.outer(z, np.ones(M)))
+        for body, z in ((pair.upper, pair.upper_height(x)), (pair.lower, pair.lower_height(x)))
     )
+    return rf.Scene(above, below, rf.Friction(pair.tau, pair.beta), load, side=1.0, periodic=True)
 
 
 def modelled(

@@ -9,10 +9,8 @@ import mpmath as mp
 import numpy as np
 
 from appendix_a import wedge
-from appendix_a.strip import Theta, field, first_order, printed
-from verification.framework.case import Measured
-from verification.framework.registry import case
-from verification.framework.verdict import Verdict, judged
+from appendix_a.strip import field, first_order, printed
+from verification.cases import Measured, Verdict, case, judged
 
 SOURCE = "boundary perturbation to first order in the slope, derived in appendix_a.strip.perturbation"
 DIGITS = 40
@@ -66,12 +64,8 @@ def a1_tractions() -> Measured:
     Tolerance: shear goes like the square of the depth, 1e-9 a, over 0.1 a from the ends
     """
     x = np.array([-30.0, -1.1, -0.9, -0.3, 0.0, 0.6, 0.9, 1.1, 2.0])
-    depths = [1e-3, 1e-5, 1e-7, 1e-9]
-    errors = []
-    for y in depths:
-        _, sigma_y, tau = field.stresses(x, y)
-        errors.append(float(np.max(np.abs(np.concatenate([sigma_y + (np.abs(x) < 1), tau])))))
-    return Measured(value=errors[-1], data={"depth over a": depths, "largest departure": errors})
+    _, sigma_y, tau = field.stresses(x, 1e-9)
+    return Measured(float(np.max(np.abs(np.concatenate([sigma_y + (np.abs(x) < 1), tau])))))
 
 
 @case("appendix-strip/first-order-wedge", metric="at_most", tolerance=1e-3)
@@ -83,18 +77,14 @@ def first_order_wedge() -> Measured:
     Source: {SOURCE}; wedge displacements from the Mellin transform
     Tolerance: what is left is of second order: gamma = 1e-5 times a coefficient below 100
     """
-    x = np.array([0.05, 0.3, 0.7, 1.0, 1.5, 3.0, 10.0])
-    series: dict[str, object] = {"x over a": x}
-    worst = []
+    x, gamma, off = np.array([0.05, 0.3, 0.7, 1.0, 1.5, 3.0, 10.0]), 1e-5, {}
     for nu in (0.0, 0.3, 0.45):
-        for gamma in (1e-3, 1e-5):
-            # the pressed length lies along the face, the offset is horizontal
-            along, _ = wedge.displacements(x / np.cos(gamma), np.full_like(x, np.pi / 2 - gamma), gamma, nu)
-            change = (along - field.flat_displacement(x, nu)) / gamma
-            expected = -(1 + nu) * (1 - 2 * nu) * np.minimum(x, 1.0)
-            series[f"nu {nu:g}, slope {gamma:g}"] = change
-            worst.append(float(np.max(np.abs(change - expected))) if gamma < 1e-4 else 0.0)
-    return Measured(value=max(worst), data=series)
+        # the pressed length lies along the face, the offset is horizontal
+        along, _ = wedge.displacements(x / np.cos(gamma), np.full_like(x, np.pi / 2 - gamma), gamma, nu)
+        change = (along - field.flat_displacement(x, nu)) / gamma
+        expected = -(1 + nu) * (1 - 2 * nu) * np.minimum(x, 1.0)
+        off[f"nu {nu:g}"] = float(np.max(np.abs(change - expected)))
+    return Measured(value=max(off.values()), data=off)
 
 
 @case("appendix-strip/superposition", metric="at_most", tolerance=2e-3)
@@ -106,13 +96,10 @@ def superposition() -> Measured:
     Source: paper Eqs (A1)-(A3); {SOURCE}
     Tolerance: second order: the slope of 1.7e-4 rad over the first order's pi a/lambda = 0.16
     """
-    offsets = np.array([-5.0, -2.0, -1.2, 1.2, 2.0, 5.0])
-    slopes, errors = [0.01, 0.1, 1.0], []
-    for slope in slopes:
-        by_paper, flat = printed(slope, 20.0, 0.3, offsets=offsets)
-        expanded, _ = first_order(slope, 20.0, 0.0, 0.3, offsets=offsets)
-        errors.append(float(np.max(np.abs((by_paper - flat) / (expanded - flat) - 1))))
-    return Measured(value=errors[0], data={"slope in degrees": slopes, "largest relative departure": errors})
+    offsets, slope = np.array([-5.0, -2.0, -1.2, 1.2, 2.0, 5.0]), 0.01
+    by_paper, flat = printed(slope, 20.0, 0.3, offsets=offsets)
+    expanded, _ = first_order(slope, 20.0, 0.0, 0.3, offsets=offsets)
+    return Measured(float(np.max(np.abs((by_paper - flat) / (expanded - flat) - 1))))
 
 
 @case("appendix-strip/crest-small", metric="at_most", tolerance=0.02)
@@ -126,16 +113,12 @@ def fig12() -> Measured:
     """
     x = np.linspace(-15.0, 15.0, 61)
     data: dict[str, object] = {"x over a": x, "flat": field.flat_displacement(x, 0.3)}
-    change = np.zeros_like(x)
-    for slope in (2.5, 6.5, 15.0):
+    for slope in (15.0, 6.5):
         by_paper, flat = printed(slope, 100.0, 0.3, offsets=x)
         expanded, _ = first_order(slope, 100.0, 0.0, 0.3, offsets=x)
         data[f"{slope:g} degrees, superposition"] = by_paper
         data[f"{slope:g} degrees, first order"] = expanded
-        if slope == 6.5:
-            literal, _ = printed(slope, 100.0, 0.3, offsets=x, theta=Theta.SLOPE)
-            data["6.5 degrees, (A3) with theta the slope"] = literal
-            change = np.maximum(np.abs(by_paper - flat), np.abs(expanded - flat))
+    change = np.maximum(np.abs(by_paper - flat), np.abs(expanded - flat))
     away = np.abs(x) >= 1
     value = float(np.max(change[away] / np.abs(field.flat_displacement(x[away], 0.3))))
     sentence = (
@@ -153,11 +136,7 @@ def flank() -> Measured:
     downhill rise, those uphill sink: at 6.5 degrees, nu = 0.3 by over 2 % of their coefficient
     Tolerance: the paper's bound for the maximum slope, which first-order theory exceeds here
     """
-    slopes = np.array([0.125, 0.5, 1.0, 2.5, 4.0, 6.5])
     offsets = np.array([-6.0, -4.0, -2.0, 2.0, 4.0, 6.0])
-    relative = []
-    for slope in slopes:
-        wavy, flat = first_order(float(slope), 100.0, 0.25, 0.3, offsets=offsets)
-        relative.append((wavy - flat) / flat)
-    data = {"slope in degrees": slopes, "offset over a": offsets, "relative change": np.array(relative)}
-    return Measured(value=float(np.max(np.abs(relative[-1]))), data=data)
+    wavy, flat = first_order(6.5, 100.0, 0.25, 0.3, offsets=offsets)
+    relative = (wavy - flat) / flat
+    return Measured(float(np.max(np.abs(relative))), data={"relative change": relative})

@@ -27,7 +27,7 @@ BUILT_FROM, JUDGED_ON, WARNED_ON = 39, 40, 41
 the second."""
 KINDS = ("crest on crest", "crest on flat", "flank", "three waves")
 ZONE = 0.45  # half-width of the meshed zone, in wavelengths
-LEVELS = (0, 1)  # uniform refinements
+LEVELS = (0, 1)  # uniform refinements, of a first solve and of the solve that judges
 CELLS = 32  # on the surface per wavelength at level 0
 TOLERANCE = 1e-6  # largest residual of the model's certificate
 NO_FRICTION = 1e-6  # mu below it is none: its relative error means nothing
@@ -123,18 +123,14 @@ def _draw(random: np.random.Generator, kind: str) -> Profiles:
     return Profiles(kind, (low, high), shift, harmonics, lower, upper, share, tau, beta)
 
 
-def by_elements(profiles: Profiles) -> tuple[Contact, Contact]:
-    """The contact by finite elements on two meshes, fine at its ends as a first solve finds them.
+def by_elements(profiles: Profiles) -> Contact:
+    """The contact by finite elements on a mesh that is fine at its ends, as a first solve finds them.
 
     Raises NotConverged.
     """
     plain = MeshPlan(CELLS, ZONE, LEVELS[0])
-    lower, upper = _pressed(profiles, plain, plain).material_ends
-    coarse, fine = (
-        _pressed(profiles, *(MeshPlan(CELLS, ZONE, level, marks) for marks in (lower, upper)))
-        for level in LEVELS
-    )
-    return coarse, fine
+    marks = _pressed(profiles, plain, plain).material_ends
+    return _pressed(profiles, *(MeshPlan(CELLS, ZONE, LEVELS[1], ends) for ends in marks))
 
 
 def _pressed(profiles: Profiles, below: MeshPlan, above: MeshPlan) -> Contact:
@@ -176,65 +172,47 @@ def numbers(profiles: Profiles, solution: rf.Solution) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Judged:
-    """One contact: relative errors by quantity, true, stated, the finite elements' own, left by first order.
+    """One contact: relative errors by quantity, true, stated, and left by first order.
 
-    ``by_facets`` is what ``slope_correction`` leaves of N's error;
-    ``quick`` is what the solution itself states for N; ``warned``: it warns of the half-space.
+    ``warned``: the solution warns of the half-space.
     """
 
-    kind: str
-    slope_deg: float
     true: dict[str, float]
     stated: dict[str, float]
-    fem: dict[str, float]
     left: dict[str, float]
-    by_facets: float
-    quick: float
     warned: bool
 
 
 def judged(profiles: Profiles, M: int = 384) -> Judged:
     """The model's error against finite elements, and what it states of it.
 
-    N's is at the finite elements' approach, all others' under the load. ``quick`` is what a solution itself
-    states for N. Areas and friction are taken with ends found between elements. Raises NotConverged.
+    N's is at the finite elements' approach, all others' under the load. Areas and friction are taken with
+    ends found between elements. Raises NotConverged.
     """
-    coarse, fine = by_elements(profiles)
+    fine = by_elements(profiles)
     scene = scene_of(profiles, M)
     solution = rf.solve(scene, grid=(M, ACROSS), tolerance=TOLERANCE)
     error = half_space_error(scene, solution)
     datum = solution.problem.datum
     first = solution.approach + datum
     at = rf.solve(scene, grid=(M, ACROSS), tolerance=TOLERANCE, approach=fine.approach - datum)
-    facets = rf.solve(
-        scene, grid=(M, ACROSS), tolerance=TOLERANCE, approach=fine.approach - datum, slope_correction=True
-    )
     true = {"approach": fine.approach / first - 1, "normal_force": scene.load / at.normal_force - 1}
     change = {
         "approach": error.first_order["approach"] / first,
         "normal_force": error.first_order["normal_force"] / scene.load,
     }
     own, receded = numbers(profiles, solution), numbers(profiles, error.corrected)
-    fem = {"approach": abs(fine.approach - coarse.approach) / first}
-    fem["normal_force"] = 2 * fem["approach"]  # d ln N / d ln approach is below 2
-    by_fem = [
-        {
-            "friction_coefficient": c.friction_coefficient,
-            "contact_area": c.length,
-            "max_pressure": float(c.pressure.max()),
-        }
-        for c in (coarse, fine)
-    ]
+    by_fem = {
+        "friction_coefficient": fine.friction_coefficient,
+        "contact_area": fine.length,
+        "max_pressure": float(fine.pressure.max()),
+    }
     for name, value in own.items():
         if abs(value) > NO_FRICTION:
-            true[name] = by_fem[1][name] / value - 1
+            true[name] = by_fem[name] / value - 1
             change[name] = receded[name] / value - 1
-            fem[name] = abs(by_fem[1][name] - by_fem[0][name]) / abs(value)
     left = {q: (1 + t) / (1 + change[q]) - 1 for q, t in true.items()}
     steep = steepness(solution.problem, solution.contact)
     stated = {q: (1 + FINITE_STRAIN) * abs(c) + SECOND_ORDER[q] * steep for q, c in change.items()}
     warned = any(getattr(w, "limit", None) == "half-space" for w in solution.warnings)
-    slope = math.degrees(math.atan(max(profiles.slopes)))
-    quick = solution.model_form.normal_force
-    by_facets = scene.load / facets.normal_force - 1
-    return Judged(profiles.kind, slope, true, stated, fem, left, by_facets, quick, warned)
+    return Judged(true, stated, left, warned)

@@ -13,8 +13,7 @@ from refimpl.model.forces import facet_resultants, plasticity_index
 from refimpl.model.friction import friction_coefficient_at
 from refimpl.model.slopes import Slopes
 from refimpl.operators.fft import FFTInfluence
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.cases import Measured, case
 
 SCENES = ("table1-smooth", "table1-rough", "metal-polymer", "rough-planes")
 

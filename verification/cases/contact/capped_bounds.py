@@ -7,9 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 import refimpl as rf
+from verification.cases import Measured, case
 from verification.cases.contact.capped import SIDE, peak_of, rough_scene, with_hardness
-from verification.framework.case import Measured
-from verification.framework.registry import case
 
 GRID, SCENES, TOLERANCES = 16, 16, (1e-4, 1e-8, 1e-11)
 SHARES = (0.8, 0.4, 0.2, 0.1)
@@ -25,28 +24,22 @@ def shares_of_bounds(seed: int) -> dict[str, list[float]]:
     scene = with_hardness(bare, hardness)
     exact = rf.solve(scene, GRID, method="dense", plastic=True, oblique=False)
     at_approach = seed % 5 == 1 and not scene.periodic
-    found: dict[str, list[float]] = {"pressure": [], "approach": [], "mu": []}
+    found: dict[str, list[float]] = {"sets": [], "pressure": [], "approach": [], "mu": []}
     for tolerance in TOLERANCES:
-        s = rf.solve(
-            scene,
-            GRID,
-            plastic=True,
-            oblique=False,
-            tolerance=tolerance,
-            approach=exact.approach if at_approach else None,
-        )
+        approach = exact.approach if at_approach else None
+        s = rf.solve(scene, GRID, plastic=True, oblique=False, tolerance=tolerance, approach=approach)
         b = s.bounds
         if not np.isfinite(b.energy):
             raise RuntimeError(f"scene {seed}: {b.unproven}")
         wrong = (b.plastic & (exact.pressure < hardness)) | (b.in_contact & (exact.pressure == 0))
         wrong |= b.out_of_contact & (exact.pressure > 0)
-        off = np.inf if wrong.any() else 0.0
-        pressure = float(np.abs(s.pressure - exact.pressure).max())
-        approach = abs(s.approach - exact.approach)
-        mu = abs(s.friction_coefficient - exact.friction_coefficient)
-        found["pressure"].append(off + pressure / (b.pressure + ROUNDING * exact.max_pressure))
-        found["approach"].append(approach / (b.approach + ROUNDING * abs(exact.approach)))
-        found["mu"].append(mu / (b.friction_coefficient + ROUNDING))
+        found["sets"].append(np.inf if wrong.any() else 0.0)
+        for name, error, bound, size in (
+            ("pressure", np.abs(s.pressure - exact.pressure).max(), b.pressure, exact.max_pressure),
+            ("approach", abs(s.approach - exact.approach), b.approach, abs(exact.approach)),
+            ("mu", abs(s.friction_coefficient - exact.friction_coefficient), b.friction_coefficient, 1.0),
+        ):
+            found[name].append(float(error) / (bound + ROUNDING * size))
     return found
 
 

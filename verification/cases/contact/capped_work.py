@@ -7,9 +7,8 @@ from itertools import product
 import numpy as np
 
 import refimpl as rf
+from verification.cases import Measured, case
 from verification.cases.contact.capped import with_hardness
-from verification.framework.case import Measured
-from verification.framework.registry import case
 
 SIDE, SIZES, SEEDS = 1e-3, (128, 256, 512), (1, 2)
 SHARES = {False: (0.7, 0.4, 0.22, 0.12), True: (0.7, 0.45, 0.3, 0.2)}
@@ -19,16 +18,10 @@ MOST = 0.96
 
 def scene(seed: int, *, periodic: bool) -> rf.Scene:
     """A steel ball, or a steel plane, on rough copper without a hardness."""
-    return rf.Scene(
-        upper=rf.Body(rf.Material(200e9, 0.3), rf.Flat() if periodic else rf.Sphere(5e-3)),
-        lower=rf.Body(
-            rf.Material(118e9, 0.34), rf.GaussianRoughness(0.4e-6 if periodic else 0.8e-6, 30e-6, seed=seed)
-        ),
-        friction=rf.Friction(15e6, 0.08),
-        load=100.0 if periodic else 50.0,
-        side=SIDE,
-        periodic=periodic,
-    )
+    smooth, rms, load = (rf.Flat(), 0.4e-6, 100.0) if periodic else (rf.Sphere(5e-3), 0.8e-6, 50.0)
+    upper = rf.Body(rf.Material(200e9, 0.3), smooth)
+    lower = rf.Body(rf.Material(118e9, 0.34), rf.GaussianRoughness(rms, 30e-6, seed=seed))
+    return rf.Scene(upper, lower, rf.Friction(15e6, 0.08), load, SIDE, periodic=periodic)
 
 
 def ratios(seed: int, M: int, *, periodic: bool) -> dict[str, float]:

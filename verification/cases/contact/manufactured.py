@@ -6,9 +6,8 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.planning.plan import Method
+from verification.cases import Measured, family
 from verification.exact.manufactured import Manufactured, manufacture
-from verification.framework.case import Measured
-from verification.framework.registry import family
 
 SOURCE = "method of manufactured solutions (Roache 2002); sums of 50-digit integrals"
 M, SEEDS, ANGLE = 12, (1, 2, 3), 0.7
@@ -21,13 +20,9 @@ ROUNDING = (
 
 def misfit(state: Manufactured, method: Method) -> float:
     """Largest difference of pressure and traction over the peak, and of approach; infinite on another set."""
+    oblique, exact = state.oblique, state.slope_correction
     found = rf.solve(
-        state.scene,
-        state.M,
-        method=method,
-        tolerance=1e-13,
-        oblique=state.oblique,
-        slope_correction=state.slope_correction,
+        state.scene, state.M, method=method, tolerance=1e-13, oblique=oblique, slope_correction=exact
     )
     if not np.array_equal(found.contact, state.pressure > 0):
         raise RuntimeError(f"{method} finds another contact set than the manufactured one")

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from verification.cases.contact.scenes import MODULUS, Array, centres, press
+from verification.cases import Measured, case
+from verification.cases.contact.scenes import MODULUS, Array, centres, measured_order, press
 from verification.exact.punch import UNCERTAINTY_CIRCLE, UNCERTAINTY_SQUARE, CircularPunch, square_stiffness
-from verification.framework.case import Measured
-from verification.framework.rates import fit_order
-from verification.framework.registry import case
 
 DEPTH = 1e-3
 """Prescribed approach (m); the elements outside the punch stand off by 1 m and never touch."""
@@ -44,10 +42,9 @@ def square_punch() -> Measured:
     """
     loads, h = np.asarray(square_loads()), 1 / np.asarray(SQUARE_GRIDS, dtype=float)
     terms = np.column_stack([np.ones_like(h), h, h**CORNER_ORDER])
-    (limit, edges, corners), *_ = np.linalg.lstsq(terms, loads, rcond=None)
+    (limit, _, _), *_ = np.linalg.lstsq(terms, loads, rcond=None)
     exact = square_stiffness(2.0, MODULUS)
-    data = {"M": list(SQUARE_GRIDS), "P/delta": loads, "h": edges / exact, "h^1.593": corners / exact}
-    return Measured(float(limit), exact, UNCERTAINTY_SQUARE * exact, "N/m", data)
+    return Measured(float(limit), exact, UNCERTAINTY_SQUARE * exact, "N/m")
 
 
 @case("reference/square-punch-order", metric="absolute", tolerance=0.05)
@@ -59,9 +56,7 @@ def square_punch_order() -> Measured:
     Tolerance: h^1.59 of the corner over a factor 6 of h; measured 0.02
     """
     exact = square_stiffness(2.0, MODULUS)
-    errors = [abs(load / exact - 1) for load in square_loads()]
-    fit = fit_order([1 / M for M in SQUARE_GRIDS], errors)
-    return Measured(fit.order, 1.0, data={"M": list(SQUARE_GRIDS), "error": errors})
+    return measured_order(SQUARE_GRIDS, [abs(load / exact - 1) for load in square_loads()], 1.0)
 
 
 @case("reference/circular-punch-stiffness", metric="at_most", tolerance=0.35)
@@ -96,5 +91,4 @@ def circular_interior() -> Measured:
     found = press(circle, 2.4, M, approach=DEPTH).pressure
     inside = r < 0.7
     worst = float(np.max(np.abs(found[inside] / punch.pressure(r[inside]) - 1)))
-    line = {"r/a": r[M // 2 :, M // 2], "p a^2/P": found[M // 2 :, M // 2] / punch.load}
-    return Measured(worst, reference_uncertainty=UNCERTAINTY_CIRCLE, data=line)
+    return Measured(worst, reference_uncertainty=UNCERTAINTY_CIRCLE)

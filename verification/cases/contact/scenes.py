@@ -13,7 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import refimpl as rf
+from verification.cases import Measured
 from verification.exact.sliding_plane import dundurs
+from verification.framework.rates import fit_order
 
 Array = NDArray[np.float64]
 Gap = Callable[[Array, Array], Array]
@@ -64,6 +66,12 @@ def press(
     if solution.status not in accept:
         raise RuntimeError(f"the solver ended {solution.status.value} on {M} x {M} elements")
     return solution
+
+
+def measured_order(grids: Sequence[int], errors: Sequence[float], expected: float) -> Measured:
+    """Order of convergence of errors on grids of M x M elements, as `rates.fit_order` fits it."""
+    fit = fit_order([1 / M for M in grids], errors)
+    return Measured(fit.order, expected, data={"M": list(grids), "error": list(errors)})
 
 
 def first_contact_approach(solution: rf.Solution, gap: Array) -> float:

@@ -24,9 +24,8 @@ import refimpl as rf
 from refimpl.grid import Array, Grid
 from verification.adapters import contactmechanics, tamaas
 from verification.adapters.published_code import Peer
+from verification.cases import Measured, case, family
 from verification.exact import rough_plane
-from verification.framework.case import Measured
-from verification.framework.registry import case, family
 from verification.solver_suite.protocol import ContactProblem
 
 MODULUS, SIDE = 1e9, 1e-3  # E* (Pa), m
@@ -37,14 +36,8 @@ def pressed(
     surface: rf.Surface, M: int, load: float, *, periodic: bool, tolerance: float = 1e-8
 ) -> rf.Solution:
     """A flat on the surface, without friction and slope terms."""
-    scene = rf.Scene(
-        upper=rf.Body(SPLIT, rf.Flat()),
-        lower=rf.Body(SPLIT, surface),
-        friction=rf.Friction(),
-        load=load,
-        side=SIDE,
-        periodic=periodic,
-    )
+    bodies = rf.Body(SPLIT, rf.Flat()), rf.Body(SPLIT, surface)
+    scene = rf.Scene(*bodies, rf.Friction(), load, SIDE, periodic=periodic)
     solution = rf.solve(scene, grid=M, oblique=False, tolerance=tolerance)
     if solution.status is not rf.Status.CONVERGED:
         raise RuntimeError(f"the solver ended {solution.status.value} on {M} x {M} elements")
@@ -80,16 +73,9 @@ def agreement(peer: Peer) -> Measured:
             )
             load = 0.05 * MODULUS * surface.rms_gradient * SIDE**2
             heights = surface.sample(Grid.square(SIDE, M, periodic=periodic))
-            answer = peer(
-                ContactProblem(
-                    gap=heights.max() - heights,
-                    spacing=SIDE / M,
-                    reduced_modulus=MODULUS,
-                    load=load,
-                    periodic=periodic,
-                    tolerance=1e-12,
-                )
-            )
+            gap = heights.max() - heights
+            problem = ContactProblem(gap, SIDE / M, MODULUS, load=load, periodic=periodic, tolerance=1e-12)
+            answer = peer(problem)
             ours = pressed(surface, M, load, periodic=periodic, tolerance=1e-12)
             off = np.abs(np.asarray(answer.pressure) - ours.pressure).max() / ours.max_pressure
             differences[f"H = {hurst}, {'periodic' if periodic else 'free'}"] = float(off)
@@ -132,14 +118,8 @@ def kappas() -> Kappas:
         longest = SIDE / waves
         M, found = waves * ratio * ELEMENTS, []
         for seed in SEEDS:
-            surface = rf.SelfAffineRoughness(
-                hurst=hurst,
-                rms_gradient=1e-3,
-                roll_off=longest,
-                long_cut=longest,
-                short_cut=longest / ratio,
-                seed=seed,
-            )
+            waves_of = {"roll_off": longest, "long_cut": longest, "short_cut": longest / ratio}
+            surface = rf.SelfAffineRoughness(hurst=hurst, rms_gradient=1e-3, seed=seed, **waves_of)
             heights = surface.sample(Grid.square(SIDE, M, periodic=True))
             gradient = rough_plane.spectral_rms_gradient(heights, SIDE)
             pressure = PRESSURE * MODULUS * gradient
@@ -155,7 +135,7 @@ def kappas() -> Kappas:
 def figure_data(found: Kappas) -> dict[str, object]:
     """Series over Nayak's parameter, by Hurst exponent, and the published lines."""
     order = np.argsort(found.nayak)
-    low, high = rough_plane.KAPPA_PUBLISHED
+    low, _ = rough_plane.KAPPA_PUBLISHED
     one = np.ones(len(order))
     return {
         "alpha": found.nayak[order],
@@ -168,7 +148,6 @@ def figure_data(found: Kappas) -> dict[str, object]:
         "Bush, Gibson and Thomas": rough_plane.KAPPA_BUSH_GIBSON_THOMAS * one,
         "Persson": float(rough_plane.persson_area(PRESSURE)) / PRESSURE * one,
         "simulations, low": low * one,
-        "simulations, high": high * one,
         "p/(E* h')": PRESSURE,
     }
 

@@ -10,10 +10,9 @@ import refimpl as rf
 from refimpl.identification import Identification, Row, identify
 from refimpl.scene.parameters import with_parameter
 from refimpl.scene.scene import Body
+from verification.cases import Measured, case, family
 from verification.coverage.identification import SETS, TableSet, study, summary
 from verification.coverage.synthetic_tables import KINDS, ROUGHNESS_TOLERANCE, SHARP
-from verification.framework.case import Measured
-from verification.framework.registry import case, family
 
 OUTLIER_ROW, OUTLIER = 4, 1.10
 FINE, COARSE = 256, 128
@@ -110,22 +109,8 @@ def effects() -> Measured:
     )
     data: dict[str, object] = {"load (N)": [row.load for row in rows]}
     data |= {name: list(one.residuals) for name, one in found.items()}
-    data["numbers"] = {name: _effect(one) for name, one in found.items()}
+    data["tau (MPa)"] = {name: one.values["tau"].value / 1e6 for name, one in found.items()}
     return Measured(value=value, data=data, note=f"rows named as outliers: {[k + 1 for k in named]}")
-
-
-def _effect(found: Identification) -> dict[str, float]:
-    tau = found.values["tau"]
-    return {
-        "tau (MPa)": tau.value / 1e6,
-        "tau, low (MPa)": tau.low / 1e6,
-        "tau, high (MPa)": tau.high / 1e6,
-        "beta": found.values["beta"].value,
-        "chi-square": found.chi_square,
-        "probability": found.probability,
-        "row of the largest deviation": int(np.argmax(np.abs(found.deleted))) + 1,
-        "largest deviation": float(np.max(np.abs(found.deleted))),
-    }
 
 
 @case("identification/solves", metric="at_most", tolerance=MOST_SOLVES)

@@ -14,9 +14,8 @@ from refimpl.operators.fft import Counter
 from refimpl.planning.terms import LABELS
 from refimpl.scene.discretise import discretise
 from refimpl.solvers.production.nested_solver import solve_fft
+from verification.cases import Measured, case
 from verification.cli.explain import explained
-from verification.framework.case import Measured
-from verification.framework.registry import case
 
 SOURCE = "the planner's own promise (README): what a scene does not require is neither built nor applied"
 BARE = Terms(coupled=False, oblique=False, tilted=False)

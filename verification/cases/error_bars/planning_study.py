@@ -7,8 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.cases import Measured, case
 from verification.scenes.neglected_terms import CORRECTION, Trial, trials
 
 SOURCE = (
@@ -34,24 +33,6 @@ def neglected() -> list[Trial]:
     return [trial for trial in studied() if trial.neglected]
 
 
-def series(found: list[Trial]) -> dict[str, object]:
-    """Estimates and effects by term, for figures."""
-    terms = sorted({trial.term for trial in found})
-    return {
-        term: {
-            "scene": [t.scene for t in found if t.term == term],
-            "estimate mu": [t.estimate.friction for t in found if t.term == term],
-            "effect mu": [t.effect.friction for t in found if t.term == term],
-            "estimate A": [t.estimate.area for t in found if t.term == term],
-            "effect A": [t.effect.area for t in found if t.term == term],
-            "estimate mu, no friction": [t.estimate.bare for t in found if t.term == term],
-            "effect mu, no friction": [t.effect.bare for t in found if t.term == term],
-            "neglected": [int(t.neglected) for t in found if t.term == term],
-        }
-        for term in terms
-    }
-
-
 def ratio(trial: Trial) -> float:
     """Larger estimate over larger effect; infinite for no effect at all."""
     return trial.estimate.larger / trial.effect.larger if trial.effect.larger > 0 else math.inf
@@ -71,7 +52,7 @@ def estimates_bound() -> Measured:
     missed = [f"{t.term} of scene {t.scene}" for t in out if not t.bounded]
     all_terms = f"of all {len(studied())} terms {whole:.3f}"
     note = f"{len(out)} neglected; {all_terms}; missed: {', '.join(missed) or 'none'}"
-    return Measured(share, data=series(studied()), note=note)
+    return Measured(share, note=note)
 
 
 @case("planning/correction-bound", metric="at_least", tolerance=0.95, tier="full")
@@ -86,7 +67,7 @@ def correction_bound() -> Measured:
     missed = [t.scene for t in found if not t.bounded]
     tight = float(np.median([ratio(t) for t in found]))
     note = f"{len(found)} scenes; missed: {missed or 'none'}; median estimate {tight:.2g} times the effect"
-    return Measured(1 - len(missed) / len(found), data=series(found), note=note)
+    return Measured(1 - len(missed) / len(found), note=note)
 
 
 @case("planning/estimates-tight", metric="at_most", tolerance=20.0, tier="full", source=SOURCE)
@@ -96,13 +77,7 @@ def estimates_tight() -> Measured:
     Claim: the median estimate of a neglected term is at most 20 times its effect, the larger of mu's and A's
     Tolerance: required of estimates that justify neglected terms; no effect counts as infinite
     """
-    by_term = {
-        term: float(np.median([ratio(t) for t in studied() if t.term == term]))
-        for term in sorted({t.term for t in studied()})
-    }
-    return Measured(
-        float(np.median([ratio(trial) for trial in neglected()])), data={"median over all scenes": by_term}
-    )
+    return Measured(float(np.median([ratio(trial) for trial in neglected()])))
 
 
 @case("planning/left-out", metric="at_least", tolerance=0.5, tier="full", source=SOURCE)
@@ -114,10 +89,6 @@ def share_neglected() -> Measured:
     """
     below = [trial for trial in studied() if trial.effect.larger <= ACCURACY]
     wrongly = [trial for trial in neglected() if trial.effect.larger > ACCURACY]
-    counts = {
-        term: [sum(t.neglected for t in below if t.term == term), sum(t.term == term for t in below)]
-        for term in sorted({t.term for t in below})
-    }
     share = sum(trial.neglected for trial in below) / len(below)
     note = f"neglected although above the accuracy: {len(wrongly)}"
-    return Measured(share, data={"neglected, below": counts}, note=note)
+    return Measured(share, note=note)

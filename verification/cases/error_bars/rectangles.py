@@ -8,22 +8,15 @@ from dataclasses import replace
 
 import refimpl as rf
 from refimpl.accuracy.refinement import uncertainty
+from verification.cases import Measured, family
 from verification.coverage.drawing import SIDE
 from verification.coverage.scenes import random_scene
-from verification.framework.case import Measured
-from verification.framework.registry import family
 
 SEEDS = range(5000, 5100)
 RATIOS = (1.4, 2.0, 3.0, 3.9)
 SIZES, FINEST = (32, 64, 128), 512
-NUMBERS = (
-    "friction_coefficient",
-    "contact_area",
-    "contact_area_corrected",
-    "max_pressure",
-    "approach",
-    "binormal_force",
-)
+NUMBERS = ("friction_coefficient", "contact_area", "contact_area_corrected",
+           "max_pressure", "approach", "binormal_force")  # fmt: skip
 
 
 def ratio_of(seed: int) -> float:

@@ -8,8 +8,7 @@ from __future__ import annotations
 import re
 
 from appendix_a import errata as appendix
-from verification.framework.case import Measured
-from verification.framework.registry import family
+from verification.cases import Measured, family
 from verification.reproduction import errata as body
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from itertools import product
 
 import numpy as np
 
@@ -14,8 +15,7 @@ from refimpl.model.friction import is_frictionless
 from refimpl.operators.fft import Counter
 from refimpl.scene.discretise import discretise
 from refimpl.solvers.paper import PAPER_TOLERANCE, Trace, solve_paper
-from verification.framework.case import Measured
-from verification.framework.registry import case, family
+from verification.cases import Measured, case, family
 from verification.scenes.cross_checks import Trial, cross_checks
 
 SOURCE = "paper section 5 and Fig. 3"
@@ -87,11 +87,11 @@ def own_tolerance(scenes: str) -> Measured:
     Tolerance: the allowed error itself: the production state's change when the load grows by the load
     tolerance, plus five last steps of 1e-5 (contraction 0.83 a step). Measured 1e-6 to 7e-5 of the peak
     """
-    names = chosen(scenes)
-    errors = [distance(paper(name, PAPER_TOLERANCE), trials()[name].dense) for name in names]
-    allowed = [load_share(trials()[name]) + STEPS_LEFT * PRESSURE_TOLERANCE for name in names]
-    data = {"scene": list(names), "pressure error / peak": errors, "allowed": allowed}
-    return Measured(float(np.max(np.divide(errors, allowed))), data=data)
+    over = {}
+    for name in chosen(scenes):
+        allowed = load_share(trials()[name]) + STEPS_LEFT * PRESSURE_TOLERANCE
+        over[name] = distance(paper(name, PAPER_TOLERANCE), trials()[name].dense) / allowed
+    return Measured(max(over.values()), data=over)
 
 
 @family(
@@ -113,19 +113,12 @@ def tightened(scenes: str) -> Measured:
     Tolerance: stated goal; the scheme's pressure steps end at 1e-10 of the pressure, five of which
     (contraction 0.83) are 5e-10. Measured 3e-10
     """
-    names = chosen(scenes)
-    data: dict[str, object] = {"scene": list(names)}
-    worst = 0.0
-    for other in ("dense", "fft"):
-        others = [getattr(trials()[name], other) for name in names]
-        pressures = [distance(paper(name, TIGHT), o) for name, o in zip(names, others, strict=True)]
-        frictions = [
-            abs(paper(name, TIGHT).friction_coefficient - o.friction_coefficient)
-            for name, o in zip(names, others, strict=True)
-        ]
-        data |= {f"pressure from {other}": pressures, f"mu from {other}": frictions}
-        worst = max(worst, *pressures, *frictions)
-    return Measured(worst, data=data)
+    off = {}
+    for name, other in product(chosen(scenes), ("dense", "fft")):
+        found, reference = paper(name, TIGHT), getattr(trials()[name], other)
+        friction = abs(found.friction_coefficient - reference.friction_coefficient)
+        off[f"{name}, {other}"] = max(distance(found, reference), friction)
+    return Measured(max(off.values()), data=off)
 
 
 @case("paper/own-tolerance-friction", metric="at_most", tolerance=1.5e-4, source=SOURCE)
@@ -136,12 +129,12 @@ def own_tolerance_friction() -> Measured:
     Tolerance: mu = F/P with F at most proportional to N: 1e-4 of the load, plus five last steps of 1e-5 in
     the pressures. Relative; measured 2e-5
     """
-    names = [name for name in QUICK if not is_frictionless(trials()[name].scene.friction)]
-    found = [paper(name, PAPER_TOLERANCE).friction_coefficient for name in names]
-    reference = [trials()[name].dense.friction_coefficient for name in names]
-    errors = np.abs(np.divide(found, reference) - 1)
-    data = {"scene": names, "mu": found, "mu of the dense reference": reference, "relative": errors}
-    return Measured(float(errors.max()), data=data)
+    off = {}
+    for name, trial in ((name, trials()[name]) for name in QUICK):
+        if not is_frictionless(trial.scene.friction):
+            found = paper(name, PAPER_TOLERANCE).friction_coefficient
+            off[name] = abs(found / trial.dense.friction_coefficient - 1)
+    return Measured(max(off.values()), data={"relative": off})
 
 
 @case("paper/same-state", metric="equal", tolerance=0.0)
@@ -167,14 +160,10 @@ def convergence() -> Measured:
     Claim: Tightened from 1e-4 to 1e-9 the scheme's pressure approaches the production solver's
     Tolerance: stated goal for the last tolerance, 1e-9; measured 3e-11 to 1e-10
     """
-    tolerances = 10.0 ** -np.arange(4, 10)
-    data: dict[str, object] = {"tolerance": tolerances}
-    last = 0.0
-    for name in ("smooth", "rough", "metal-polymer"):
-        solutions = [paper(name, float(tolerance)) for tolerance in tolerances]
-        errors = [distance(solution, trials()[name].fft) for solution in solutions]
-        data[f"{name}: pressure"] = errors
-        mu = trials()[name].fft.friction_coefficient
-        data[f"{name}: mu"] = [abs(solution.friction_coefficient - mu) for solution in solutions]
-        last = max(last, errors[-1])
-    return Measured(last, data=data)
+    tolerances = tuple(float(tolerance) for tolerance in 10.0 ** -np.arange(4, 10))
+    errors = {
+        name: [distance(paper(name, tolerance), trials()[name].fft) for tolerance in tolerances]
+        for name in ("smooth", "rough", "metal-polymer")
+    }
+    data: dict[str, object] = {"tolerance": tolerances, **errors}
+    return Measured(max(series[-1] for series in errors.values()), data=data)

@@ -2,32 +2,22 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 
-from verification.framework.case import Measured
-from verification.framework.verdict import Verdict, judged
-from verification.reproduction import fig8, table3
-from verification.reproduction.ensemble import column, estimate, reduced, rows, rows_of
+from verification.cases import Measured, Verdict, judged
+from verification.reproduction import fig8
+from verification.reproduction.ensemble import column, estimate, rows_at
 from verification.reproduction.printed import CRITICAL_RMS, LOADS, RESOLUTION, TABLE3
 from verification.reproduction.tiers import in_both_tiers
-from verification.sweep.run import Row
-from verification.sweep.study_file import read_study
 
 ROUGH = tuple(printed.flat_rms for printed in TABLE3[1:])
 LOADS_IN_WORDS = ", ".join(f"{load:g}" for load in LOADS) + " N"
-
-
-def _curves(tier: str) -> tuple[fig8.Curve, ...]:
-    return fig8.full_curves() if tier == "full" else fig8.quick_curves()
 
 
 def _series(curves: tuple[fig8.Curve, ...]) -> dict[str, object]:
     data: dict[str, object] = {
         "sigma_e (um)": curves[0].rms * 1e6,
         "psi": fig8.plasticity(curves[0].rms),
-        "psi as printed": fig8.plasticity(curves[0].rms, RESOLUTION),
         "sigma_e of rates (um)": curves[0].middle * 1e6,
     }
     for c in curves:
@@ -48,7 +38,7 @@ def exponential(tier: str) -> Measured:
     s)^1.5) with as many parameters: 1 or less for an exponential law. Measured 2.2 with three realisations,
     2.4 with 25
     """
-    curves = _curves(tier)
+    curves = fig8.curves(tier)
     fits = [fig8.decay(c) for c in curves]
     if any(np.any(np.diff(c.friction) >= 0) for c in curves):
         raise ArithmeticError("mu does not fall everywhere")
@@ -62,10 +52,8 @@ def exponential(tier: str) -> Measured:
         "1 / (1 + (sigma_e / s)^1.5), with as many parameters, misses by "
         f"{max(f.algebraic for f in fits):.1%}"
     )
-    data = _series(curves) | {"decay (um)": [f.scale * 1e6 for f in fits]}
-    data |= {"exponential's limit": [f.limit for f in fits], "misfit": [f.exponential for f in fits]}
+    data = _series(curves) | {"misfit": [f.exponential for f in fits]}
     data |= {"misfit of 1 / (1 + (sigma / s)^1.5)": [f.algebraic for f in fits]}
-    data |= {"misfit of a hyperbola": [f.hyperbolic for f in fits], "least mu less limit": beyond}
     data |= {"standard errors from the exponential": [f.standard_errors for f in fits]}
     ratio = min(fit.exponential / fit.algebraic for fit in fits)
     return judged(Verdict.REFUTED, sentence, ratio, data=data)
@@ -80,7 +68,7 @@ def rates(tier: str) -> Measured:
     Tolerance: Eq. (10) makes them identical; what slopes add is of the order of the elastic part of friction,
     below 1 %
     """
-    curves = _curves(tier)
+    curves = fig8.curves(tier)
     worst = max(float(np.abs(c.rate(c.friction) - c.rate(c.area)).max()) for c in curves)
     highest = {f"{c.load:g} N": float(c.rate(c.friction).max()) for c in curves}
     sentence = (
@@ -88,7 +76,7 @@ def rates(tier: str) -> Measured:
         f"rates rise before they fall, to {', '.join(f'{r:.2f} at {at}' for at, r in highest.items())}: no "
         "exponential's rate rises"
     )
-    return judged(Verdict.CONFIRMED, sentence, worst, data=_series(curves) | {"highest rate": highest})
+    return judged(Verdict.CONFIRMED, sentence, worst, data=_series(curves))
 
 
 @in_both_tiers("reproduction/fig8-threshold", metric="at_least", tolerance=1.3)
@@ -99,7 +87,7 @@ def threshold(tier: str) -> Measured:
     Source: paper Fig. 8, Eq. (12), section 8
     Tolerance: psi does not know the load, so the ratio would be 1; the interpolated roughness is good to 10 %
     """
-    curves = _curves(tier)
+    curves = fig8.curves(tier)
     critical = [_levelled(c) for c in curves]
     printed = float(fig8.plasticity(np.array([CRITICAL_RMS]), RESOLUTION)[0])
     later = float(np.interp(1.0e-6, curves[-1].middle, curves[-1].rate(curves[-1].friction)))
@@ -129,7 +117,7 @@ def without_beta(tier: str) -> Measured:
     Tolerance: difference of the two scatters over A's: at 1.68 um the elastic part's own scatter, 0.7 % of mu
     at beta = 0.08, is 6.6 % of mu at beta = 0 beside A's 10 %: 19 % in squares
     """
-    found = _beta0(tier)
+    found = rows_at(tier, "beta0")
     area = [estimate(column(found, "contact_area", lower_rms=flat)).scatter for flat in ROUGH]
     mu = [estimate(column(found, "friction_coefficient", lower_rms=flat)).scatter for flat in ROUGH]
     worst = float(np.max(np.abs(np.array(mu) / np.array(area) - 1)))
@@ -142,13 +130,6 @@ def without_beta(tier: str) -> Measured:
         "scatter of mu": mu,
     }
     return judged(Verdict.CONDITIONAL, sentence, worst, data=data)
-
-
-@cache
-def _beta0(tier: str) -> tuple[Row, ...]:
-    if tier == "full":
-        return rows_of("beta0")
-    return rows(reduced(read_study("beta0"), table3.QUICK_REALISATIONS, grid=(table3.QUICK_MESH,)))
 
 
 def _percent(shares: list[float]) -> str:

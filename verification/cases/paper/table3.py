@@ -12,21 +12,19 @@ import numpy as np
 import refimpl as rf
 from refimpl.grid import Array
 from refimpl.model.friction import friction_coefficient_at
-from verification.framework.case import Measured
-from verification.framework.registry import case, family
-from verification.framework.verdict import Verdict, judged
+from verification.cases import Measured, Verdict, case, family, judged
 from verification.reproduction import table3
-from verification.reproduction.ensemble import column, estimate
+from verification.reproduction.ensemble import QUICK_MESH, Estimate, column, estimate, rows_at
 from verification.reproduction.printed import (
     AREA_FLUCTUATION,
     FRICTION_FLUCTUATION,
     HARDNESS,
     LOWEST_FRICTION,
+    MESHES,
     TABLE3,
 )
 from verification.reproduction.table1 import SMOOTH, rough
 from verification.reproduction.tiers import TIERS, in_both_tiers
-from verification.sweep.run import Row
 
 TAU = SMOOTH.friction.tau
 ROUGH = tuple(printed.flat_rms for printed in TABLE3[1:])
@@ -38,26 +36,25 @@ NAMES = {
 }
 DECIMAL = {"friction_coefficient": 0.01, "contact_area": 0.01e-6, "max_pressure": 0.01e9}  # mm^2, GPa
 TOLERANCE = {"quick": 5.0, "full": 1.0}
+FINEST = {"quick": QUICK_MESH, "full": 512}  # elements a side
 
 
-def _table3(tier: str) -> tuple[tuple[Row, ...], int]:
-    return (table3.full_rows(), 512) if tier == "full" else (table3.quick_rows(), table3.QUICK_MESH)
+def _estimates(tier: str, quantity: str) -> list[Estimate]:
+    """Estimates of a quantity in the rough columns of the table, on the finest mesh of a tier."""
+    rows, mesh = rows_at(tier, "table3"), FINEST[tier]
+    return [estimate(column(rows, quantity, lower_rms=flat, grid=mesh)) for flat in ROUGH]
 
 
 @family(
     "quantity, name, tier, tolerance",
     {
         f"reproduction/table3-{slug}{'' if tier == 'quick' else '-full'}": (
-            quantity,
-            name,
-            tier,
-            TOLERANCE[tier],
-        )
+            quantity, name, tier, TOLERANCE[tier])
         for quantity, (slug, name) in NAMES.items()
         for tier in TIERS
     },
     metric="at_most",
-)
+)  # fmt: skip
 def reproduced(quantity: str, tier: str) -> Measured:
     """Table 3: {name}.
 
@@ -69,9 +66,8 @@ def reproduced(quantity: str, tier: str) -> Measured:
     1.2, and what print misses Eq. (10) by on that mesh, 4 % of mu (errata/table3-coarse), 3.5 standard
     deviations
     """
-    rows, mesh = _table3(tier)
-    table = table3.cells(rows, quantity) if tier == "full" else table3.cells(rows, quantity, (mesh,))
-    finest = max(cell.mesh for cell in table)
+    finest = FINEST[tier]
+    table = table3.cells(rows_at(tier, "table3"), quantity, MESHES if tier == "full" else (finest,))
     judgeable = [cell for cell in table if cell.mesh == finest]
     rough = [cell for cell in judgeable if cell.column.flat_rms > 0]
     worst = max(abs(cell.deviation) / cell.ours.scatter for cell in rough)
@@ -98,14 +94,11 @@ def scatter(tier: str) -> Measured:
     Tolerance: relative difference of mu's scatter from what Eq. (10) makes of A's, tau A / N / mu times it:
     at 1.68 um that is 1.0 % of mu, and the elastic part's own 0.7 % (measured) adds in squares: 19 %
     """
-    found, mesh = _table3(tier)
-    area, mu, expected = [], [], []
-    for flat in ROUGH:
-        a = estimate(column(found, "contact_area", lower_rms=flat, grid=mesh))
-        m = estimate(column(found, "friction_coefficient", lower_rms=flat, grid=mesh))
-        area.append(a.scatter)
-        mu.append(m.scatter)
-        expected.append(TAU * a.mean / SMOOTH.load / m.mean * a.scatter)
+    areas, frictions = (_estimates(tier, name) for name in ("contact_area", "friction_coefficient"))
+    area, mu = ([e.scatter for e in found] for found in (areas, frictions))
+    expected = [
+        TAU * a.mean / SMOOTH.load / m.mean * a.scatter for a, m in zip(areas, frictions, strict=True)
+    ]
     worst = float(np.max(np.abs(np.array(mu) / np.array(expected) - 1)))
     sentence = (
         f"mu scatters by {_percent(mu)} (0.504, 1.008, 1.68 um), nowhere by {FRICTION_FLUCTUATION:.1%}; "
@@ -135,8 +128,7 @@ def area_scatter(tier: str) -> Measured:
     (print states no roughness). A standard deviation of n realisations is known, at 95 %, to 2 / sqrt(2 n -
     2) of itself: 0.63 of six, 0.164 of 75
     """
-    found, mesh = _table3(tier)
-    area = [estimate(column(found, "contact_area", lower_rms=flat, grid=mesh)) for flat in ROUGH]
+    area = _estimates(tier, "contact_area")
     scatter = [a.scatter for a in area]
     nearest = min(abs(s / AREA_FLUCTUATION - 1) for s in scatter)
     known = 2 / math.sqrt(2 * area[0].n - 2)
@@ -158,7 +150,7 @@ def equation10(tier: str) -> Measured:
     Tolerance: largest error of a single solution: the part that Eq. (10) neglects is elastic, first order in
     the mean slope under load, whose scatter is 1 % of mu
     """
-    found, mesh = _table3(tier)
+    found, mesh = rows_at(tier, "table3"), FINEST[tier]
     errors: dict[float, Array] = {}
     for flat in ROUGH:
         where = {"lower_rms": flat, "grid": mesh}
@@ -171,7 +163,6 @@ def equation10(tier: str) -> Measured:
         f"largest error {worst:.2%} in one solution, mean errors {', '.join(f'{m:+.3%}' for m in means)}"
     )
     data = {"sigma_e (um)": [c.equivalent_rms * 1e6 for c in TABLE3[1:]], "mean error": means}
-    data["rms error"] = [float(np.sqrt(np.mean(e**2))) for e in errors.values()]
     return judged(Verdict.CONFIRMED, sentence, worst, data=data)
 
 
@@ -184,9 +175,7 @@ def equation11(tier: str) -> Measured:
     Tolerance: mean pressure over hardness at 1.68 um: above 1 the elastic model passes the limit that (11)
     assumes; the mesh and the sample leave 10 %
     """
-    found, mesh = _table3(tier)
-    area = [estimate(column(found, "contact_area", lower_rms=flat, grid=mesh)).mean for flat in ROUGH]
-    mu = [estimate(column(found, "friction_coefficient", lower_rms=flat, grid=mesh)).mean for flat in ROUGH]
+    area, mu = ([e.mean for e in _estimates(tier, n)] for n in ("contact_area", "friction_coefficient"))
     ratio = [SMOOTH.load / a / HARDNESS for a in area]
     sentence = (
         f"mu goes down to {mu[-1]:.4f} (printed 0.089), below {LOWEST_FRICTION}, at a mean pressure of "
@@ -216,14 +205,12 @@ def digits() -> Measured:
 
     Check of the printed numbers alone.
     """
-    data: dict[str, object] = {"flat rms (um)": [found.flat_rms * 1e6 for found in TABLE3]}
     shown, largest = [], 0.0
     within: dict[bool, list[str]] = {True: [], False: []}
     for quantity, (_, name) in NAMES.items():
         medium, fine = np.array([getattr(found, quantity)[1:] for found in TABLE3]).T
         decimals = np.abs(fine - medium) / DECIMAL[quantity]
         change = np.abs(fine / medium - 1)
-        data |= {f"{name}: second decimals": decimals, f"{name}: relative change": change}
         shown.append(f"{name} {decimals.max():.1f} ({change.max():.1%})")
         within[bool(decimals.max() < 1)].append(name)
         largest = max(largest, float(decimals.max()))
@@ -233,7 +220,7 @@ def digits() -> Measured:
         f"{', '.join(within[False]) or 'none'}"
     )
     verdict = Verdict.CONDITIONAL if within[True] else Verdict.REFUTED
-    return judged(verdict, sentence, largest, data=data)
+    return judged(verdict, sentence, largest, data={})
 
 
 REALISATIONS, MESH, ROUGHER_BALL = 25, 256, 0.252e-6
@@ -259,23 +246,12 @@ def ball_roughness() -> Measured:
             rougher = rf.solve(rough(flat, ROUGHER_BALL, k), MESH)
             ratios.setdefault(flat, []).append(rougher.contact_area / stated.contact_area)
             peaks.setdefault(flat, []).append(rougher.max_pressure / stated.max_pressure)
-    deviations = {
-        cell.column.flat_rms: cell.deviation
-        for cell in table3.cells(table3.full_rows(), "contact_area", (MESH,))
-    }
+    cells = table3.cells(rows_at("full", "table3"), "contact_area", (MESH,))
+    deviations = {cell.column.flat_rms: cell.deviation for cell in cells}
     change = {flat: estimate(values) for flat, values in ratios.items()}
     before = deviations[0.504e-6] - deviations[1.680e-6]
     after = before + change[0.504e-6].mean - change[1.680e-6].mean
-    data = {
-        "flat rms (um)": [flat * 1e6 for flat in change],
-        "A with rougher ball / A": [e.mean for e in change.values()],
-        "half width 95 %": [e.half_width for e in change.values()],
-        "f_max with rougher ball / f_max": [float(np.mean(p)) for p in peaks.values()],
-        "deviation of A from print": [deviations[flat] for flat in change],
-        "trend before": before,
-        "trend after": after,
-        "columns": len(TABLE3),
-    }
+    data = {"trend before": before, "trend after": after}
     sentence = (
         f"trend of A's deviation {before:+.1%} over the columns as stated, {after:+.1%} with a ball of "
         f"0.252 um, which changes f_max at 0.504 um by {float(np.mean(peaks[0.504e-6])) - 1:+.1%}"

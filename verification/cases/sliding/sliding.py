@@ -10,9 +10,8 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
+from verification.cases import Measured, case, family
 from verification.exact.hertz import Sphere
-from verification.framework.case import Measured
-from verification.framework.registry import case, family
 
 SOURCE = "paper sections 3 and 7, Fig. 5; Johnson 1985, sections 3.6, 3.7"
 SCENE = rf.read_scene("table1-smooth")
@@ -74,8 +73,6 @@ def trailing_edge() -> Measured:
         "x": x,
         "pressure along": solution.pressure[:, middle] / 1e6,
         "traction along": solution.traction[:, middle] / 1e6,
-        "pressure across": solution.pressure[middle, :] / 1e6,
-        "traction across": solution.traction[middle, :] / 1e6,
         "hertz pressure": hertz.pressure(offset()) / 1e6,
         "hertz traction": 0.08 * hertz.pressure(offset()) / 1e6,
         "change by friction": (solution.pressure - still.pressure)[:, middle] / 1e6,

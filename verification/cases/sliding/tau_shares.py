@@ -14,9 +14,8 @@ from refimpl.operators.influence import window_influence
 from refimpl.operators.preconditioner import SpectralPreconditioner, extended
 from refimpl.solvers.production.level import LevelSolver
 from refimpl.solvers.tau_active_set import FixedSet
+from verification.cases import Measured, family
 from verification.coverage.scenes import random_scene
-from verification.framework.case import Measured
-from verification.framework.registry import family
 
 NINE = [*((seed, 64) for seed in (2015, 2031, 2047, 2054, 2118, 2121, 2134, 2164)), (2071, 128)]
 """Seed and elements per side. Eight of the eleven scenes that cycle at 64 x 64, with the longest error bars;
@@ -122,31 +121,15 @@ def apart(scenes: Sequence[tuple[int, int]], least: int) -> Measured:
 
     Scenes are given by seed and elements per side. Raises RuntimeError where fewer than ``least`` cycle.
     """
-    found: dict[str, list[float]] = {
-        "scene": [], "elements per side": [], "excluded": [],
-        "mu": [], "mu in shares": [], "moves by": [], "bar": [],
-    }  # fmt: skip
+    shares = {}
     for seed, M in scenes:
         solution = rf.solve(random_scene(seed).scene, M, tolerance=TOLERANCE)
-        if solution.status is not rf.Status.CYCLED:
-            continue
-        numbers = (
-            float(seed),
-            float(M),
-            float(solution.excluded.sum()),
-            solution.friction_coefficient,
-            *in_shares(solution),
-            solution.uncertainty["friction_coefficient"]["active set"],
-        )
-        for column, number in zip(found.values(), numbers, strict=True):
-            column.append(number)
-    if len(found["scene"]) < least:
-        raise RuntimeError(f"{len(found['scene'])} of {len(scenes)} scenes cycle: too few to judge by")
-    off = np.abs(np.subtract(found["mu in shares"], found["mu"])) + found["moves by"]
-    names = [f"{s:.0f}: {n:.0f} excluded" for s, n in zip(found["scene"], found["excluded"], strict=True)]
-    shares = dict(zip(names, (off / found["bar"]).tolist(), strict=True))
-    return Measured(
-        max(shares.values()),
-        data={**found, "difference / bar": shares},
-        note=f"{len(shares)} scenes that cycle, of {len(scenes)}",
-    )
+        if solution.status is rf.Status.CYCLED:
+            mu, moves_by = in_shares(solution)
+            off = abs(mu - solution.friction_coefficient) + moves_by
+            bar = solution.uncertainty["friction_coefficient"]["active set"]
+            shares[f"{seed}: {solution.excluded.sum()} excluded"] = off / bar
+    note = f"{len(shares)} scenes that cycle, of {len(scenes)}"
+    if len(shares) < least:
+        raise RuntimeError(f"{note}: too few to judge by")
+    return Measured(max(shares.values()), data={"difference / bar": shares}, note=note)

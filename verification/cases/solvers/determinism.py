@@ -7,8 +7,7 @@ import math
 import numpy as np
 
 from refimpl.planning.plan import Method
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.cases import Measured, case
 from verification.stress_tests.determinism import difference, in_a_process, solved
 
 SETTINGS: tuple[tuple[Method, bool], ...] = (("fft", False), ("fft", True), ("dense", False))

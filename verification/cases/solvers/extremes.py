@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 import refimpl as rf
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from refimpl.planning.plan import Method
+from verification.cases import Measured, case, family
 from verification.stress_tests import conditioning, positive_definite, precision, uniqueness
 from verification.stress_tests.axes import AXES, states
 from verification.stress_tests.state import Verdict
@@ -37,32 +37,20 @@ def counted(rows: list[Row]) -> Measured:
     return Measured(value=float(len(broken)), data=data, note=f"{len(rows)} states: {numbers}")
 
 
-def declare(axis: str) -> None:
-    """The case of one axis: all its states."""
-
-    @case(
-        f"extremes/{axis.replace(' ', '-')}",
-        metric="at_most",
-        tolerance=0.0,
-        tier="full",
-        title=f"Extremes of the axis {axis!r}",
-        claim=CLAIM,
-        source=SOURCE,
-        tolerance_reason="a count",
-    )
-    def all_states() -> Measured:
-        return counted(run([axis]))
+@family(
+    "axis",
+    {f"extremes/{axis.replace(' ', '-')}": (axis,) for axis in AXES},
+    metric="at_most", tolerance=0.0, tier="full", claim=CLAIM, source=SOURCE, tolerance_reason="a count",
+)  # fmt: skip
+def all_states(axis: str) -> Measured:
+    """Extremes of the axis {axis!r}."""
+    return counted(run([axis]))
 
 
-for name in AXES:
-    declare(name)
-
-
-@case("extremes/sample", metric="at_most", tolerance=0.0, claim=CLAIM)
+@case("extremes/sample", metric="at_most", tolerance=0.0, claim=CLAIM, source=SOURCE)
 def sample() -> Measured:
     """A sample of all cheap extremes.
 
-    Source: exact discrete states in 34 digits, scaling laws, closed forms; see verification.stress_tests
     Tolerance: a count
     """
     cheap = [name for name in AXES if name not in COSTLY]
@@ -97,11 +85,7 @@ def definite() -> Measured:
     }
     spread = max(abs(v / values[0] - 1) for values in least.values() for v in values)
     above = min(values[0] - bound for values in least.values())
-    corrected = {
-        t: float(positive_definite.symmetric_part(6, 0.3, 0.3, t)[0]) for t in (0.0, 0.3, 1.0, 2.0, 3.0)
-    }
-    data = {"least by M": least, "symbol": bound, "with the slope correction, by slope": corrected}
-    return Measured(value=spread if above > 0 else np.inf, data=data)
+    return Measured(value=spread if above > 0 else np.inf, data={"least by M": least, "symbol": bound})
 
 
 @case("extremes/lawful-states", metric="at_most", tolerance=0.0, tier="full")
@@ -129,13 +113,8 @@ def digits() -> Measured:
     Tolerance: 10 eps in each arithmetic
     """
     table = precision.table()
-    own = [
-        value
-        for row, values in table["digits lost"].items()
-        if "this code" in row
-        for value in values
-        if value is not None
-    ]
+    rows = (values for name, values in table["digits lost"].items() if "this code" in name)
+    own = [value for values in rows for value in values if value is not None]
     return Measured(value=max(0.0, *own), data=table)
 
 
@@ -162,10 +141,7 @@ def beyond_rounding() -> Measured:
     """
     # without symmetry: of sixteen elements that are four, residuals may be zero by luck
     scene, beyond = rf.read_scene("table1-rough"), 1e-18
-    found = {
-        "fft": rf.solve(scene, 16, method="fft", tolerance=beyond),
-        "dense": rf.solve(scene, 16, method="dense", tolerance=beyond),
-        "paper": rf.solve(scene, 16, method="paper", tolerance=beyond),
-    }
+    methods: tuple[Method, ...] = ("fft", "dense", "paper")
+    found = {method: rf.solve(scene, 16, method=method, tolerance=beyond) for method in methods}
     claimed = sum(solution.status is rf.Status.CONVERGED for solution in found.values())
     return Measured(float(claimed), 0.0, data={"status": {m: s.status.value for m, s in found.items()}})

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.cases import Measured, case, family
 from verification.solver_suite import own
 from verification.solver_suite.check import Fault
 from verification.solver_suite.faulty_solvers.table import FAULTY
@@ -37,34 +36,25 @@ def own_solver() -> Measured:
     return Measured(len(left), 0.0, unit="cases", data=data, note="; ".join(left) or f"{len(results)} cases")
 
 
-def _declare(fault: Fault) -> None:
-    """The case that a fault is caught in every case of the suite that names it."""
+@family(
+    "fault",
+    {"contestants/catches-" + "-".join(fault.replace("%", "percent").split()): (fault,) for fault in FAULTY},
+    metric="equal", tolerance=0.0, tier="full", source=SOURCE,
+)  # fmt: skip
+def caught(fault: Fault) -> Measured:
+    """A solver with a fault: {fault}.
 
-    @case(
-        "contestants/catches-" + "-".join(fault.replace("%", "percent").split()),
-        metric="equal",
-        tolerance=0.0,
-        tier="full",
-        title=f"A solver with a fault: {fault}",
-        claim="It claims success, and fails in each case of the suite whose description names the fault",
-        source=SOURCE,
-        tolerance_reason="a number of cases that name the fault and do not fail",
-    )
-    def caught() -> Measured:
-        naming = [check.slug for check in suite() if fault in check.catches]
-        if not naming:
-            raise ValueError(f"no case of the suite names {fault!r}")
-        found = verdicts(fault)
-        missed = [slug for slug in naming if found[slug] != "fail"]
-        others = [slug for slug in found if slug not in naming and found[slug] in ("fail", "error")]
-        note = (
-            f"caught in {len(naming)} that name it and in {len(others)} others; missed in {missed or 'none'}"
-        )
-        return Measured(len(missed), 0.0, unit="cases", data={"named in": naming, "also": others}, note=note)
-
-
-for _fault in FAULTY:
-    _declare(_fault)
+    Claim: It claims success, and fails in each case of the suite whose description names the fault
+    Tolerance: a number of cases that name the fault and do not fail
+    """
+    naming = [check.slug for check in suite() if fault in check.catches]
+    if not naming:
+        raise ValueError(f"no case of the suite names {fault!r}")
+    found = verdicts(fault)
+    missed = [slug for slug in naming if found[slug] != "fail"]
+    others = [slug for slug in found if slug not in naming and found[slug] in ("fail", "error")]
+    note = f"caught in {len(naming)} that name it and in {len(others)} others; missed in {missed or 'none'}"
+    return Measured(len(missed), 0.0, unit="cases", data={"named in": naming, "also": others}, note=note)
 
 
 @case("contestants/each-case-earns-its-place", metric="equal", tolerance=0.0, tier="full", source=SOURCE)

@@ -10,8 +10,7 @@ import numpy as np
 
 from refimpl.grid import Array, Grid
 from refimpl.surfaces import SelfAffineRoughness
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.cases import Measured, case
 
 SOURCE = "Persson, Albohr, Tartaglino, Volokitin and Tosatti 2005; Jacobs, Junge and Pastewka 2017"
 SIDE, POINTS = 1e-3, 256

@@ -8,8 +8,7 @@ import numpy as np
 
 from refimpl.grid import Array, Grid
 from refimpl.surfaces import GaussianRoughness, statistics
-from verification.framework.case import Measured
-from verification.framework.registry import case
+from verification.cases import Measured, case
 
 
 @case("surfaces/skewness", metric="relative", tolerance=1e-14)

@@ -1,4 +1,4 @@
-"""Prove every golden scene anew and write its file: ``python -m verification.golden --json DIR``."""
+"""Prove every scene anew and write its file: ``python -m verification.enclosures --json DIR``."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from verification.golden.build import proven
-from verification.golden.store import write
+from verification.enclosures.build import proven
+from verification.enclosures.store import write
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Exit status 0 when all scenes are proven, 2 without the directory; raises `NotProven`."""
-    parser = argparse.ArgumentParser(prog="python -m verification.golden", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m verification.enclosures", description=__doc__)
     parser.add_argument("--json", metavar="DIR", type=Path, required=True, help="directory of the JSON files")
     folder: Path = parser.parse_args(arguments).json
     if not folder.is_dir():
         print(f"{folder} is no directory", file=sys.stderr)
         return 2
-    for golden, proof in proven():
-        path = write(golden, proof, folder)
-        print(f"{path.name}: {len(proof.pressures)} of {golden.M**2} elements in contact, proven")
+    for known, proof in proven():
+        path = write(known, proof, folder)
+        print(f"{path.name}: {len(proof.pressures)} of {known.M**2} elements in contact, proven")
     return 0
 
 

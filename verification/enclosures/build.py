@@ -6,27 +6,27 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from verification.golden.enclosure import Proof, prove
-from verification.golden.scenes import GoldenScene, near_tie, oblique_scene, scenes
+from verification.enclosures.proof import Proof, prove
+from verification.enclosures.scenes import EnclosedScene, near_tie, oblique_scene, scenes
 
 MARGIN = 1e-10
 """By how much a near tie's element misses or makes contact, relative to the approach."""
 
 
-def proven() -> Iterator[tuple[GoldenScene, Proof]]:
-    """Every golden scene with its proof, one by one."""
-    for golden in (*scenes(), oblique_scene()):
-        yield golden, prove_proposed(golden)
-        if golden.name == "rough":
-            yield from near_ties(golden)
+def proven() -> Iterator[tuple[EnclosedScene, Proof]]:
+    """Every scene with its proof, one by one."""
+    for known in (*scenes(), oblique_scene()):
+        yield known, prove_proposed(known)
+        if known.name == "rough":
+            yield from near_ties(known)
 
 
-def prove_proposed(golden: GoldenScene) -> Proof:
+def prove_proposed(known: EnclosedScene) -> Proof:
     """Proof of the contact set that the dense reference proposes. Raises `NotProven`."""
-    return prove(golden, golden.solve("dense").contact)
+    return prove(known, known.solve("dense").contact)
 
 
-def near_ties(base: GoldenScene) -> Iterator[tuple[GoldenScene, Proof]]:
+def near_ties(base: EnclosedScene) -> Iterator[tuple[EnclosedScene, Proof]]:
     """The free element nearest to contact, raised until it misses contact, or makes it, by `MARGIN`."""
     proof = prove_proposed(base)
     separations = np.array([float(w) for w in proof.separations])
@@ -34,7 +34,7 @@ def near_ties(base: GoldenScene) -> Iterator[tuple[GoldenScene, Proof]]:
     i, j = (int(k) for k in np.argwhere(~proof.contact)[nearest])
     margin = MARGIN * float(proof.approach)
     for name, miss in (("near-tie-misses", margin), ("near-tie-touches", -margin)):
-        golden = near_tie(base, name, (i, j), float(separations[nearest]) - miss)
+        known = near_tie(base, name, (i, j), float(separations[nearest]) - miss)
         contact = proof.contact.copy()
         contact[i, j] = miss < 0
-        yield golden, prove(golden, contact)
+        yield known, prove(known, contact)

@@ -1,4 +1,4 @@
-"""Proof of a golden scene by ball arithmetic (Arb): coefficients, linear solution, strict KKT margins.
+"""Proof of a scene by ball arithmetic (Arb): coefficients, linear solution, strict KKT margins.
 
 A contact set S is given. On S Eq. (6) with equality, with ``r = tau + beta f``, and Eq. (2) are linear in the
 pressures and the approach. Their balls contain the exact solution, whatever the rounding; if every pressure's
@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 
 from refimpl.grid import Mask
+from verification.enclosures.scenes import SIDE, EnclosedScene
 from verification.framework.case import Unavailable
-from verification.golden.scenes import SIDE, GoldenScene
 
 BITS = 256
 """Working precision. Corner sums on 12 elements lose some 10 bits, the linear solution some 10 more."""
@@ -48,11 +48,11 @@ class Proof:
     forces: dict[str, Ball]
 
 
-def prove(golden: GoldenScene, contact: Mask) -> Proof:
+def prove(known: EnclosedScene, contact: Mask) -> Proof:
     """Raises `NotProven`, and `Unavailable` without python-flint."""
     flint = arb()
     with flint.ctx.workprec(BITS):
-        return _Balls(golden, contact).proof()
+        return _Balls(known, contact).proof()
 
 
 def arb() -> Any:
@@ -67,10 +67,10 @@ def arb() -> Any:
 class _Balls:
     """The frozen linear problem of one scene and contact set."""
 
-    def __init__(self, golden: GoldenScene, contact: Mask) -> None:
-        self.golden, self.contact, self.flint = golden, contact, arb()
+    def __init__(self, known: EnclosedScene, contact: Mask) -> None:
+        self.known, self.contact, self.flint = known, contact, arb()
         self.number = self.flint.arb
-        self.h = self.number(SIDE) / golden.M
+        self.h = self.number(SIDE) / known.M
         self.inside = [(int(i), int(j)) for i, j in np.argwhere(contact)]
         self.outside = [(int(i), int(j)) for i, j in np.argwhere(~contact)]
 
@@ -78,17 +78,17 @@ class _Balls:
         """The balls, if their signs prove the set."""
         pressures, approach = self._solution()
         separations = [self._separation(e, pressures, approach) for e in self.outside]
-        for element, ball in zip(self.inside, pressures, strict=True):
-            if not ball > 0:
-                raise NotProven(f"{self.golden.name}: the pressure {ball} at {element} is not above 0")
-        for element, ball in zip(self.outside, separations, strict=True):
-            if not ball > 0:
-                raise NotProven(f"{self.golden.name}: the separation {ball} at {element} is not above 0")
+        for what, elements, balls in (
+            ("pressure", self.inside, pressures), ("separation", self.outside, separations)
+        ):  # fmt: skip
+            for element, ball in zip(elements, balls, strict=True):
+                if not ball > 0:
+                    raise NotProven(f"{self.known.name}: the {what} {ball} at {element} is not above 0")
         return Proof(self.contact, pressures, separations, approach, self._forces(pressures))
 
     def _solution(self) -> tuple[list[Ball], Ball]:
         """Rows: Eq. (6) times K on each element of the set; then the load, or the approach itself."""
-        golden, n = self.golden, len(self.inside)
+        known, n = self.known, len(self.inside)
         matrix, right = self.flint.arb_mat(n + 1, n + 1), self.flint.arb_mat(n + 1, 1)
         for row, element in enumerate(self.inside):
             for column, source in enumerate(self.inside):
@@ -96,10 +96,10 @@ class _Balls:
             K = self._cosines(element)[2]
             matrix[row, n] = -K
             right[row, 0] = -K * self._gap(element) - self._by_tau(element)
-        if golden.approach is not None:
-            matrix[n, n], right[n, 0] = self.number(1), self.number(golden.approach)
+        if known.approach is not None:
+            matrix[n, n], right[n, 0] = self.number(1), self.number(known.approach)
         else:
-            right[n, 0] = self.number(golden.load) / self.h**2
+            right[n, 0] = self.number(known.load) / self.h**2
             for column, source in enumerate(self.inside):
                 by_pressure, by_tau = self._force_weights(source)["normal_force"]
                 matrix[n, column] = by_pressure
@@ -118,12 +118,12 @@ class _Balls:
         for source, f in zip(self.inside, pressures, strict=True):
             for name, (by_pressure, by_tau) in self._force_weights(source).items():
                 totals[name] += (by_pressure * f + by_tau) * self.h**2
-        load = totals["normal_force"] if self.golden.approach is not None else self.number(self.golden.load)
+        load = totals["normal_force"] if self.known.approach is not None else self.number(self.known.load)
         return {**totals, "friction_coefficient": totals["friction_force"] / load}
 
     def _force_weights(self, element: tuple[int, int]) -> dict[str, tuple[Ball, Ball]]:
         """Eqs (2), (3) and Q per element: factor of f, and the share of tau."""
-        tau, beta = self.number(self.golden.friction.tau), self.number(self.golden.friction.beta)
+        tau, beta = self.number(self.known.friction.tau), self.number(self.known.friction.beta)
         cos_x, cos_y, _ = self._cosines(element)
         sin_x, sin_y = (t * c for t, c in zip(self._tangents(element), (cos_x, cos_y), strict=True))
         down, along = cos_x - beta * sin_x, sin_x + beta * cos_x
@@ -134,9 +134,9 @@ class _Balls:
         }
 
     def _tangents(self, element: tuple[int, int]) -> tuple[Ball, Ball]:
-        if self.golden.tan_x is None or self.golden.tan_y is None:
+        if self.known.tan_x is None or self.known.tan_y is None:
             return self.number(0), self.number(0)
-        return self.number(float(self.golden.tan_x[element])), self.number(float(self.golden.tan_y[element]))
+        return self.number(float(self.known.tan_x[element])), self.number(float(self.known.tan_y[element]))
 
     def _cosines(self, element: tuple[int, int]) -> tuple[Ball, Ball, Ball]:
         """cos theta_x, cos theta_y and their product."""
@@ -144,29 +144,27 @@ class _Balls:
         return cos_x, cos_y, cos_x * cos_y
 
     def _gap(self, element: tuple[int, int]) -> Ball:
-        return self.number(float(self.golden.heights.max())) - self.number(
-            float(self.golden.heights[element])
-        )
+        return self.number(float(self.known.heights.max())) - self.number(float(self.known.heights[element]))
 
     def _by_tau(self, element: tuple[int, int]) -> Ball:
         """Displacement by tau on the contact set."""
         total = self.number(0)
-        if self.golden.friction.tau:
+        if self.known.friction.tau:
             for source in self.inside:
                 total += self._shear(element[0] - source[0], element[1] - source[1])
-        return total * self.number(self.golden.friction.tau)
+        return total * self.number(self.known.friction.tau)
 
     def _influence(self, element: tuple[int, int], source: tuple[int, int]) -> Ball:
         """``a + beta c`` between two elements (m/Pa)."""
         i, j = element[0] - source[0], element[1] - source[1]
         coefficient = self._compliances[0] * self._table["normal"][abs(i)][abs(j)]
-        if self.golden.friction.beta:
-            coefficient += self.number(self.golden.friction.beta) * self._shear(i, j)
+        if self.known.friction.beta:
+            coefficient += self.number(self.known.friction.beta) * self._shear(i, j)
         return coefficient
 
     def _shear(self, i: int, j: int) -> Ball:
         """c at an offset: ``s = x cos phi + y sin phi`` (m/Pa)."""
-        phi = self.number(self.golden.direction)
+        phi = self.number(self.known.direction)
         x = self._table["tangential"][abs(i)][abs(j)] * ((i > 0) - (i < 0))
         y = self._table["tangential"][abs(j)][abs(i)] * ((j > 0) - (j < 0))
         return self._compliances[1] * (phi.cos() * x + phi.sin() * y)
@@ -175,7 +173,7 @@ class _Balls:
     def _compliances(self) -> tuple[Ball, Ball]:
         """Factors of I[1/rho], the sum of both bodies, and of I[s/rho^2], lower minus upper (1/Pa)."""
         pi, by_pressure, by_shear = self.number.pi(), [], []
-        for body in (self.golden.lower, self.golden.upper):
+        for body in (self.known.lower, self.known.upper):
             E, nu = self.number(body.E), self.number(body.nu)
             by_pressure.append((1 - nu**2) / (pi * E))
             by_shear.append((1 + nu) * (1 - 2 * nu) / (2 * pi * E))
@@ -184,9 +182,9 @@ class _Balls:
     @cached_property
     def _table(self) -> dict[str, list[list[Ball]]]:
         """I[1/rho] and I[x/rho^2] (m) at offsets of ``i, j >= 0`` elements."""
-        if self.golden.periodic:
+        if self.known.periodic:
             return self._periodic_table()
-        M, half = self.golden.M, self.number(1) / 2
+        M, half = self.known.M, self.number(1) / 2
         corners = [
             [(_love(X, Y), _cerruti(X, Y)) for Y in (j - half for j in range(M + 1))]
             for X in (i - half for i in range(M + 1))
@@ -203,7 +201,7 @@ class _Balls:
 
     def _periodic_table(self) -> dict[str, list[list[Ball]]]:
         """Sums of the modes ``2 pi/q`` and ``-2 pi i q_x/q^2``; no mean, no sine at the Nyquist frequency."""
-        M = self.golden.M
+        M = self.known.M
         number, scale = self.number, self.number(SIDE) / M**2
         turn = [2 * number(k) / M for k in range(M)]
         cos, sin = [t.cos_pi() for t in turn], [t.sin_pi() for t in turn]

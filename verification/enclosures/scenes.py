@@ -1,4 +1,4 @@
-"""The golden scenes: whole problems in exact binary numbers, each for one part of the model.
+"""The scenes: whole problems in exact binary numbers, each for one part of the model.
 
 Heights are multiples of 2^-40 m (2^-60 m in a near tie), so that any code forms gaps without rounding.
 """
@@ -6,6 +6,7 @@ Heights are multiples of 2^-40 m (2^-60 m in a near tie), so that any code forms
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -20,7 +21,7 @@ NONE = rf.Friction()
 
 
 @dataclass(frozen=True, eq=False)
-class GoldenScene:
+class EnclosedScene:
     """Heights of the lower surface (m) below a flat upper one, materials, friction, load (N) or approach (m).
 
     ``tan_x``, ``tan_y`` are the slopes held in the proof, or None for ``oblique=False``.
@@ -64,14 +65,8 @@ class GoldenScene:
 
     def solve(self, method: Method = "fft", tolerance: float = 1e-12) -> rf.Solution:
         """The scene solved, with the terms that the proof has."""
-        return rf.solve(
-            self.scene,
-            self.M,
-            method=method,
-            approach=self.approach,
-            oblique=self.oblique,
-            tolerance=tolerance,
-        )
+        terms: Any = {"approach": self.approach, "oblique": self.oblique}
+        return rf.solve(self.scene, self.M, method=method, tolerance=tolerance, **terms)
 
 
 def surface(M: int, seed: int, rms: float, radius: float | None = None, quantum: float = 2.0**-40) -> Array:
@@ -83,83 +78,42 @@ def surface(M: int, seed: int, rms: float, radius: float | None = None, quantum:
     return np.asarray(np.rint(z / quantum) * quantum)
 
 
-def scenes() -> tuple[GoldenScene, ...]:
+def scenes() -> tuple[EnclosedScene, ...]:
     """All but the near ties and the oblique one, which take a proven or a solved scene to start from."""
     return (
-        GoldenScene("smooth", "a smooth bump without friction", surface(9, 0, 0.0, 0.2), load=12.0),
-        GoldenScene(
-            "rough", "a rough bump on identical metal", surface(12, 1, 0.1e-6, 0.3), upper=COPPER, load=6.0
-        ),
-        GoldenScene(
-            "friction",
-            "dissimilar bodies sliding askew, tau and beta",
-            surface(8, 2, 0.3e-6, 0.1),
-            lower=POLYMER,
-            friction=SLIDING,
-            load=2.0,
-            direction=0.7,
-        ),
-        GoldenScene(
-            "other-sign",
-            "coupling of the other sign, sliding backwards, a nearly incompressible and a cellular body",
-            surface(7, 3, 0.2e-6, 0.1),
-            lower=rf.Material(70e9, 0.49),
-            upper=rf.Material(3e9, -0.2),
-            friction=rf.Friction(tau=0.2e6, beta=0.4),
-            load=2.0,
-            direction=2.5,
-        ),
-        GoldenScene(
-            "approach",
-            "prescribed approach, coupled",
-            surface(9, 4, 0.3e-6, 0.1),
-            lower=POLYMER,
-            friction=SLIDING,
-            approach=2.0**-20,
-            direction=1.0,
-        ),
-        GoldenScene(
-            "periodic",
-            "periodic rough plane with friction",
-            surface(8, 5, 0.15e-6),
-            lower=POLYMER,
-            friction=SLIDING,
-            load=1.0,
-            direction=0.3,
-            periodic=True,
-        ),
-        GoldenScene("single", "one element in contact", surface(5, 6, 2e-6), load=2.0**-10),
-        GoldenScene(
-            "full", "every element in contact", surface(6, 7, 2e-9), lower=POLYMER, friction=SLIDING, load=4.0
-        ),
-        GoldenScene(
-            "largest",
-            "dissimilar, rough, with friction, on 144 elements",
-            surface(12, 8, 0.2e-6, 0.2),
-            lower=POLYMER,
-            friction=rf.Friction(tau=0.2e6, beta=0.3),
-            load=1.0,
-            direction=-1.2,
-        ),
-    )
+        EnclosedScene("smooth", "a smooth bump without friction", surface(9, 0, 0.0, 0.2), load=12.0),
+        EnclosedScene("rough", "a rough bump on identical metal", surface(12, 1, 0.1e-6, 0.3),
+                      upper=COPPER, load=6.0),
+        EnclosedScene("friction", "dissimilar bodies sliding askew, tau and beta", surface(8, 2, 0.3e-6, 0.1),
+                      lower=POLYMER, friction=SLIDING, load=2.0, direction=0.7),
+        EnclosedScene("other-sign", "coupling of the other sign, sliding backwards, a nearly incompressible "
+                      "and a cellular body", surface(7, 3, 0.2e-6, 0.1), lower=rf.Material(70e9, 0.49),
+                      upper=rf.Material(3e9, -0.2), friction=rf.Friction(0.2e6, 0.4),
+                      load=2.0, direction=2.5),
+        EnclosedScene("approach", "prescribed approach, coupled", surface(9, 4, 0.3e-6, 0.1),
+                      lower=POLYMER, friction=SLIDING, approach=2.0**-20, direction=1.0),
+        EnclosedScene("periodic", "periodic rough plane with friction", surface(8, 5, 0.15e-6),
+                      lower=POLYMER, friction=SLIDING, load=1.0, direction=0.3, periodic=True),
+        EnclosedScene("single", "one element in contact", surface(5, 6, 2e-6), load=2.0**-10),
+        EnclosedScene("full", "every element in contact", surface(6, 7, 2e-9),
+                      lower=POLYMER, friction=SLIDING, load=4.0),
+        EnclosedScene("largest", "dissimilar, rough, with friction, on 144 elements",
+                      surface(12, 8, 0.2e-6, 0.2), lower=POLYMER, friction=rf.Friction(0.2e6, 0.3),
+                      load=1.0, direction=-1.2),
+    )  # fmt: skip
 
 
-def oblique_scene() -> GoldenScene:
+def oblique_scene() -> EnclosedScene:
     """A steep rough bump; held are the slopes that the dense reference ends with."""
-    start = GoldenScene(
-        "oblique",
-        "slopes of some 0.05 in Eqs (2), (3) and (6), with tau and beta",
-        surface(7, 9, 2e-6, 0.02),
-        lower=POLYMER,
-        friction=SLIDING,
-        load=20.0,
-        direction=0.4,
-    )
+    start = EnclosedScene(
+        "oblique", "slopes of some 0.05 in Eqs (2), (3) and (6), with tau and beta",
+        surface(7, 9, 2e-6, 0.02), lower=POLYMER, friction=SLIDING, load=20.0, direction=0.4,
+    )  # fmt: skip
     solution = rf.solve(start.scene, start.M, method="dense", tolerance=1e-12)
     return replace(start, tan_x=solution.slopes.tan_x, tan_y=solution.slopes.tan_y)
 
 
-def near_tie(base: GoldenScene, name: str, element: tuple[int, int], rise: float) -> GoldenScene:
+def near_tie(base: EnclosedScene, name: str, element: tuple[int, int], rise: float) -> EnclosedScene:
     """``base`` with one element raised by about ``rise`` (m), so that it just does, or does not, touch."""
     quantum = 2.0**-60
     heights = base.heights.copy()

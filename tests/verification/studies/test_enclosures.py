@@ -1,4 +1,4 @@
-"""Golden scenes: files proven anew, wrong contact sets refused, enclosures that are what they say."""
+"""Enclosed scenes: files proven anew, wrong contact sets refused, enclosures that are what they say."""
 
 from __future__ import annotations
 
@@ -12,30 +12,30 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from verification.enclosures import build
+from verification.enclosures.proof import BITS, NotProven, _Balls, arb, prove
+from verification.enclosures.store import Enclosed, document, enclosed, named, parsed, stored
 from verification.exact.kernel_reference import normal, tangential
 from verification.framework.case import Unavailable
-from verification.golden import build
-from verification.golden.enclosure import BITS, NotProven, _Balls, arb, prove
-from verification.golden.store import Enclosed, document, enclosed, named, parsed, stored
 
 
 def test_twelve_scenes_are_stored_with_positive_margins_and_provenance() -> None:
     assert len(stored()) == 12
-    for golden in stored():
-        path = resources.files("verification.golden") / f"{golden.scene.name}.json"
+    for known in stored():
+        path = resources.files("verification.enclosures") / f"{known.scene.name}.json"
         content = json.loads(path.read_text(encoding="utf-8"))
-        assert golden.scene.M <= 12
-        assert golden.margins["smallest pressure"] > 0
-        gap = golden.margins["smallest separation"]
-        assert golden.contact.all() if gap is None else gap > 0
+        assert known.scene.M <= 12
+        assert known.margins["smallest pressure"] > 0
+        gap = known.margins["smallest separation"]
+        assert known.contact.all() if gap is None else gap > 0
         assert content["proof"]["largest relative radius"] < 1e-50
-        assert golden.radius <= 2e-16 * golden.pressure.max()
+        assert known.radius <= 2e-16 * known.pressure.max()
         assert content["provenance"]["versions"]["python-flint"]
 
 
 def test_heights_are_exact_in_binary() -> None:
-    for golden in stored():
-        heights = golden.scene.heights
+    for known in stored():
+        heights = known.scene.heights
         assert np.array_equal(heights, np.rint(heights * 2.0**60) / 2.0**60)
         gap = heights.max() - heights
         assert np.array_equal(heights.max() - gap, heights)
@@ -46,29 +46,29 @@ def test_files_are_written_anew_by_one_command(
 ) -> None:
     few = [s for s in build.scenes() if s.name in ("smooth", "rough", "single")]
     monkeypatch.setattr(build, "scenes", lambda: few)
-    main = import_module("verification.golden.__main__").main
+    main = import_module("verification.enclosures.__main__").main
     assert main(["--json", str(tmp_path)]) == 0
     assert capsys.readouterr().out.count("proven") == 6
     names = {"smooth", "rough", "near-tie-misses", "near-tie-touches", "single", "oblique"}
     assert {path.stem for path in tmp_path.glob("*.json")} == names
     for path in tmp_path.glob("*.json"):
-        fresh, golden = parsed(json.loads(path.read_text(encoding="utf-8"))), named(path.stem)
-        if golden.scene.oblique:
+        fresh, known = parsed(json.loads(path.read_text(encoding="utf-8"))), named(path.stem)
+        if known.scene.oblique:
             continue  # its slopes are a solver's, so its last digits depend on the linear algebra at hand
-        assert np.array_equal(fresh.scene.heights, golden.scene.heights)
-        assert np.array_equal(fresh.contact, golden.contact)
-        assert np.abs(fresh.pressure - golden.pressure).max() <= fresh.radius + golden.radius
-        assert all(fresh.numbers[key].meets(golden.numbers[key]) for key in golden.numbers)
+        assert np.array_equal(fresh.scene.heights, known.scene.heights)
+        assert np.array_equal(fresh.contact, known.contact)
+        assert np.abs(fresh.pressure - known.pressure).max() <= fresh.radius + known.radius
+        assert all(fresh.numbers[key].meets(known.numbers[key]) for key in known.numbers)
     assert main(["--json", str(tmp_path / "nowhere")]) == 2
 
 
 def test_a_wrong_contact_set_is_not_proven() -> None:
-    golden = named("rough")
-    for element in (np.argwhere(golden.contact)[0], np.argwhere(~golden.contact)[0]):
-        wrong = golden.contact.copy()
+    known = named("rough")
+    for element in (np.argwhere(known.contact)[0], np.argwhere(~known.contact)[0]):
+        wrong = known.contact.copy()
         wrong[tuple(element)] ^= True
         with pytest.raises(NotProven, match="not above 0"):
-            prove(golden.scene, wrong)
+            prove(known.scene, wrong)
 
 
 def test_near_ties_swap_their_sets_with_each_other() -> None:
@@ -81,10 +81,10 @@ def test_near_ties_swap_their_sets_with_each_other() -> None:
 
 
 def test_coefficients_contain_independent_ones() -> None:
-    golden = named("friction")
+    known = named("friction")
     with arb().ctx.workprec(BITS):
-        balls = _Balls(golden.scene, golden.contact)
-        h = 2.0**-10 / golden.scene.M
+        balls = _Balls(known.scene, known.contact)
+        h = 2.0**-10 / known.scene.M
         for kind, exact in (("normal", normal), ("tangential", tangential)):
             for i, j in ((0, 0), (1, 0), (0, 1), (3, 5), (7, 7)):
                 value = exact(i * h, j * h, h, h)
@@ -93,13 +93,13 @@ def test_coefficients_contain_independent_ones() -> None:
 
 
 def test_a_sign_of_c_moves_the_proof() -> None:
-    golden = named("friction")
-    swapped = replace(golden.scene, lower=golden.scene.upper, upper=golden.scene.lower)
+    known = named("friction")
+    swapped = replace(known.scene, lower=known.scene.upper, upper=known.scene.lower)
     try:
-        f = np.array([float(ball) for ball in prove(swapped, golden.contact).pressures])
+        f = np.array([float(ball) for ball in prove(swapped, known.contact).pressures])
     except NotProven:
         return
-    assert np.abs(f - golden.pressure[golden.contact]).max() > 1e-3 * golden.pressure.max()
+    assert np.abs(f - known.pressure[known.contact]).max() > 1e-3 * known.pressure.max()
 
 
 def test_enclosures_in_doubles_contain_the_ball() -> None:
@@ -114,11 +114,11 @@ def test_enclosures_in_doubles_contain_the_ball() -> None:
 
 
 def test_documents_round_trip_and_other_formats_are_refused() -> None:
-    golden = named("oblique")
-    content = document(golden.scene, prove(golden.scene, golden.contact))
+    known = named("oblique")
+    content = document(known.scene, prove(known.scene, known.contact))
     back = parsed(json.loads(json.dumps(content)))
-    assert np.array_equal(back.pressure, golden.pressure)
-    assert np.array_equal(back.scene.tan_x, golden.scene.tan_x)
+    assert np.array_equal(back.pressure, known.pressure)
+    assert np.array_equal(back.scene.tan_x, known.scene.tan_x)
     with pytest.raises(ValueError, match="format"):
         parsed({**content, "format": "another"})
 

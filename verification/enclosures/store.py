@@ -1,4 +1,4 @@
-"""Golden files: one JSON document per scene with its problem, its proven solution and its provenance.
+"""Enclosure files: one JSON document per scene with its problem, its proven solution and its provenance.
 
 Numbers are a midpoint and a radius: the exact value lies within the radius of the midpoint, both doubles. The
 problem's own numbers are exact. A pressure list follows the contact map's marks, row by row.
@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -19,10 +19,10 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array, Mask
+from verification.enclosures.proof import BITS, Ball, Proof, arb
+from verification.enclosures.scenes import SIDE, EnclosedScene
 from verification.framework.files import to_json, write_text
 from verification.framework.provenance import provenance
-from verification.golden.enclosure import BITS, Ball, Proof, arb
-from verification.golden.scenes import SIDE, GoldenScene
 
 FORMAT = "rough-friction golden scene, version 1"
 _EPS = float(np.finfo(float).eps)
@@ -45,13 +45,13 @@ class Enclosed:
 
 
 @dataclass(frozen=True, eq=False)
-class Golden:
+class Enclosure:
     """A stored scene: contact set, pressure midpoints with their largest radius (Pa), enclosed numbers.
 
     ``numbers`` holds the approach (m, from first contact), the forces (N) and the friction coefficient.
     """
 
-    scene: GoldenScene
+    scene: EnclosedScene
     contact: Mask
     pressure: Array
     radius: float
@@ -59,22 +59,22 @@ class Golden:
     margins: Mapping[str, float | None]
 
 
-def document(golden: GoldenScene, proof: Proof) -> dict[str, Any]:
+def document(known: EnclosedScene, proof: Proof) -> dict[str, Any]:
     """The JSON document of a proof."""
     return {
         "format": FORMAT,
-        "name": golden.name,
-        "stresses": golden.stresses,
-        "problem": _problem(golden),
+        "name": known.name,
+        "stresses": known.stresses,
+        "problem": _problem(known),
         "proof": {
             "arithmetic": f"python-flint arb, {BITS} bits",
             "contact": _drawn(proof.contact),
             **_margins(proof),
         },
         "solution": {
-            "pressures": [enclosed_json(ball) for ball in proof.pressures],
-            "approach": enclosed_json(proof.approach),
-            **{name: enclosed_json(ball) for name, ball in proof.forces.items()},
+            "pressures": [asdict(enclosed(ball)) for ball in proof.pressures],
+            "approach": asdict(enclosed(proof.approach)),
+            **{name: asdict(enclosed(ball)) for name, ball in proof.forces.items()},
         },
         "provenance": provenance(),
     }
@@ -87,40 +87,30 @@ def enclosed(ball: Ball) -> Enclosed:
     return Enclosed(mid, radius * (1 + 4 * _EPS))
 
 
-def enclosed_json(ball: Ball) -> dict[str, float]:
-    """`enclosed`, for JSON."""
-    found = enclosed(ball)
-    return {"mid": found.mid, "radius": found.radius}
-
-
-def write(golden: GoldenScene, proof: Proof, folder: Path) -> Path:
+def write(known: EnclosedScene, proof: Proof, folder: Path) -> Path:
     """Write ``folder/NAME.json`` in one step; its path."""
-    path = folder / f"{golden.name}.json"
-    write_text(to_json(document(golden, proof)), path)
+    path = folder / f"{known.name}.json"
+    write_text(to_json(document(known, proof)), path)
     return path
 
 
 @cache
-def stored() -> tuple[Golden, ...]:
-    """All golden scenes that ship with the package, by name. Raises FileNotFoundError when there are none."""
-    files = sorted(
-        file.name for file in resources.files("verification.golden").iterdir() if file.name.endswith(".json")
-    )
+def stored() -> tuple[Enclosure, ...]:
+    """All enclosed scenes that ship with the package, by name. Raises FileNotFoundError without any."""
+    folder = resources.files("verification.enclosures")
+    files = sorted((file for file in folder.iterdir() if file.name.endswith(".json")), key=lambda f: f.name)
     if not files:
-        raise FileNotFoundError("no golden scenes: run python -m verification.golden --json DIR")
-    return tuple(
-        parsed(json.loads((resources.files("verification.golden") / name).read_text(encoding="utf-8")))
-        for name in files
-    )
+        raise FileNotFoundError("no enclosed scenes: run python -m verification.enclosures --json DIR")
+    return tuple(parsed(json.loads(file.read_text(encoding="utf-8"))) for file in files)
 
 
-def named(name: str) -> Golden:
+def named(name: str) -> Enclosure:
     """The stored scene of this name. Raises StopIteration for an unknown one."""
-    return next(golden for golden in stored() if golden.scene.name == name)
+    return next(known for known in stored() if known.scene.name == name)
 
 
-def parsed(content: Mapping[str, Any]) -> Golden:
-    """A golden document read back. Raises ValueError for another format, KeyError for a missing part."""
+def parsed(content: Mapping[str, Any]) -> Enclosure:
+    """A document read back. Raises ValueError for another format, KeyError for a missing part."""
     if content["format"] != FORMAT:
         raise ValueError(f"not a file of the format {FORMAT!r}")
     contact = np.array([[mark == "#" for mark in row] for row in content["proof"]["contact"]])
@@ -129,7 +119,7 @@ def parsed(content: Mapping[str, Any]) -> Golden:
     pressure[contact] = [entry["mid"] for entry in solution["pressures"]]
     numbers = {name: Enclosed(**entry) for name, entry in solution.items() if name != "pressures"}
     margins = {name: content["proof"][name] for name in ("smallest pressure", "smallest separation")}
-    return Golden(
+    return Enclosure(
         scene=_scene(content),
         contact=contact,
         pressure=pressure,
@@ -139,40 +129,36 @@ def parsed(content: Mapping[str, Any]) -> Golden:
     )
 
 
-def _problem(golden: GoldenScene) -> dict[str, Any]:
+_ARRAYS = ("heights", "tan_x", "tan_y")
+_NUMBERS = ("approach", "direction", "periodic")
+
+
+def _problem(known: EnclosedScene) -> dict[str, Any]:
+    arrays = {name: getattr(known, name) for name in _ARRAYS}
     return {
-        "M": golden.M,
+        "M": known.M,
         "side": SIDE,
-        "lower": {"E": golden.lower.E, "nu": golden.lower.nu},
-        "upper": {"E": golden.upper.E, "nu": golden.upper.nu},
-        "friction": {"tau": golden.friction.tau, "beta": golden.friction.beta},
-        "load": golden.load if golden.approach is None else None,
-        "approach": golden.approach,
-        "direction": golden.direction,
-        "periodic": golden.periodic,
-        "heights": golden.heights.tolist(),
-        "tan_x": None if golden.tan_x is None else golden.tan_x.tolist(),
-        "tan_y": None if golden.tan_y is None else golden.tan_y.tolist(),
+        "lower": {"E": known.lower.E, "nu": known.lower.nu},
+        "upper": {"E": known.upper.E, "nu": known.upper.nu},
+        "friction": {"tau": known.friction.tau, "beta": known.friction.beta},
+        "load": known.load if known.approach is None else None,
+        **{name: getattr(known, name) for name in _NUMBERS},
+        **{name: None if array is None else array.tolist() for name, array in arrays.items()},
     }
 
 
-def _scene(content: Mapping[str, Any]) -> GoldenScene:
+def _scene(content: Mapping[str, Any]) -> EnclosedScene:
     problem = content["problem"]
-    tangents = {
-        name: None if problem[name] is None else np.array(problem[name]) for name in ("tan_x", "tan_y")
-    }
-    return GoldenScene(
+    arrays: Any = {n: None if problem[n] is None else np.array(problem[n]) for n in _ARRAYS}
+    return EnclosedScene(
         name=content["name"],
         stresses=content["stresses"],
-        heights=np.array(problem["heights"]),
         lower=rf.Material(**problem["lower"]),
         upper=rf.Material(**problem["upper"]),
         friction=rf.Friction(**problem["friction"]),
         load=1.0 if problem["load"] is None else problem["load"],
-        approach=problem["approach"],
-        direction=problem["direction"],
-        periodic=problem["periodic"],
-        **tangents,
+        **{name: problem[name] for name in _NUMBERS},
+        **arrays,
     )
 
 
