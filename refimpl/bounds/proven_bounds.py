@@ -319,5 +319,5 @@ def _largest_root(quadratic: float, linear: float, constant: float) -> float:
 def _none(problem: Problem, why: str) -> Bounds:
     nowhere = no_elements(problem)
     whole = nowhere.size * problem.grid.element_area
-    unbounded = (math.inf,) * 8  # of every number from the energy to mu
+    unbounded = (math.inf,) * 8  # numbers from the energy to mu
     return Bounds(*unbounded, nowhere, nowhere, contact_area=(0.0, whole), plastic=nowhere, unproven=why)

@@ -14,7 +14,6 @@ from typing import Any
 from refimpl.errors import InputError
 from refimpl.measured.measured_surface import MeasuredSurface
 from refimpl.scene.scene import Body, Scene
-from refimpl.surfaces import SurfaceSum
 
 MAX_ROWS, MAX_BYTES = 1000, 1_000_000
 MIXED_FRICTION = 50.0  # ratio of two rows' mu from which one of them is taken to be in kN
@@ -64,7 +63,7 @@ def _from_file(body: Body, name: str, path: str) -> Body:
     if len(measured) != 1:
         raise InputError(name, path, f"none: the scene's body has {len(measured)} measured surfaces, not one")
     parts[measured[0]] = replace(parts[measured[0]], path=path)
-    return Body(body.material, parts[0] if len(parts) == 1 else SurfaceSum(tuple(parts)))
+    return body.with_parts(parts)
 
 
 def read_rows(path: str | Path) -> tuple[Row, ...]:

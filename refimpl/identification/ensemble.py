@@ -23,7 +23,6 @@ import numpy as np
 from refimpl.grid import Array
 from refimpl.identification.forward import Forward, Response
 from refimpl.scene.scene import Body, Scene
-from refimpl.surfaces import SurfaceSum
 
 MIN_REALISATIONS = 3
 _SEED_STEP = 1000  # between realisations: far from the seeds of both bodies
@@ -38,15 +37,14 @@ def redrawn(scene: Scene, k: int) -> Scene:
     """Return the scene with the seeds of its random surfaces moved, the k-th realisation."""
     if k == 0:
         return scene
-    bodies: dict[str, Any] = {}
-    for name in ("upper", "lower"):
-        body = getattr(scene, name)
-        parts: tuple[Any, ...] = tuple(
-            replace(part, seed=part.seed + k * _SEED_STEP) if hasattr(part, "seed") else part
-            for part in body.surface.parts
+
+    def drawn(body: Body) -> Body:
+        parts: tuple[Any, ...] = body.surface.parts
+        return body.with_parts(
+            [replace(p, seed=p.seed + k * _SEED_STEP) if hasattr(p, "seed") else p for p in parts]
         )
-        bodies[name] = Body(body.material, parts[0] if len(parts) == 1 else SurfaceSum(parts))
-    return replace(scene, **bodies)
+
+    return replace(scene, upper=drawn(scene.upper), lower=drawn(scene.lower))
 
 
 def draws(

@@ -166,8 +166,8 @@ def certify(
 ) -> State:
     """Recompute displacements, slopes, approach, forces and every residual from the returned arrays.
 
-    All arguments but the first two are the fields of a `SolverResult`; what it says of its own end
-    (``excluded``, ``status``, ``iterations``) is passed on and enters no number.
+    All arguments but the first two are the fields of a `SolverResult`; ``excluded``, ``status`` and
+    ``iterations`` are passed on and enter no number.
 
     ``slopes`` enter only through the facet tractions of the slope correction and through the residual
     ``slope``, and the plastic ``indentation`` (m) only through the slopes of the common surface; the cosines

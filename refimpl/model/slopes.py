@@ -107,7 +107,7 @@ class Slopes:
     @property
     def obliqueness(self) -> Array:
         """Former name of `cosine_product`, for one release."""
-        warnings.warn("Slopes.obliqueness is now Slopes.cosine_product", DeprecationWarning, stacklevel=2)
+        warnings.warn("`Slopes.obliqueness` is now `Slopes.cosine_product`", DeprecationWarning, stacklevel=2)
         return self.cosine_product
 
     def per_cosine_product(self, values: Array) -> Array:

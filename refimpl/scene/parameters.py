@@ -7,7 +7,6 @@ from dataclasses import replace
 
 from refimpl.errors import InputError, require_number
 from refimpl.scene.scene import Body, Scene
-from refimpl.surfaces import SurfaceSum
 
 BODIES = ("upper", "lower")
 _TOLERANCE = "a relative tolerance between 0 and 1 (half-width, 95 %)"
@@ -55,7 +54,7 @@ def with_parameter(scene: Scene, name: str, value: float) -> Scene:
         parts = list(body.surface.parts)
         k = int(place[len("surface[") : -1])
         parts[k] = parts[k].with_parameter(key, value)
-        body = Body(body.material, parts[0] if len(parts) == 1 else SurfaceSum(tuple(parts)))
+        body = body.with_parts(parts)
     return replace(scene, upper=body) if which == "upper" else replace(scene, lower=body)
 
 

@@ -24,7 +24,7 @@ from refimpl.errors import (
 from refimpl.grid import Array, Grid
 from refimpl.model.friction import Friction
 from refimpl.model.materials import Material, Pair
-from refimpl.surfaces import Surface, SurfaceWarning, as_surface
+from refimpl.surfaces import Surface, SurfaceSum, SurfaceWarning, as_surface
 from refimpl.surfaces.shapes import Sphere
 
 # Arguments of a surface, by the names of the scene's fields.
@@ -46,6 +46,10 @@ class Body:
             raise InputError("material", material, "a Material")
         object.__setattr__(self, "material", material)
         object.__setattr__(self, "surface", as_surface(surface))
+
+    def with_parts(self, parts: Sequence[Surface]) -> Body:
+        """Return the body with these parts as its surface."""
+        return Body(self.material, parts[0] if len(parts) == 1 else SurfaceSum(tuple(parts)))
 
 
 @dataclass(frozen=True, eq=False)
