@@ -92,7 +92,7 @@ def test_a_refinement_returns_its_best_finished_grid(monkeypatch: pytest.MonkeyP
         finest.append(plan.grid.shape[0])
         if plan.grid.shape[0] <= 64:
             return solved
-        return replace(solved, result=replace(solved.result, status=rf.Status.STAGNATED))
+        return replace(solved, state=replace(solved.state, status=rf.Status.STAGNATED))
 
     monkeypatch.setattr(refined, "solve_on_grid", fails_beyond_64)
     steel = rf.Material(E=200e9, nu=0.3)

@@ -47,7 +47,7 @@ def test_tolerances_and_quantities_by_default() -> None:
     own = asked(), asked(grid=None, accuracy=0.002), asked(method="paper"), asked(tolerance=0.2)
     assert [one.residual_tolerance for one in own] == pytest.approx([1e-8, 2e-6, 1e-4, 0.2])
     assert [one.plan().demand for one in own[1:]] == [0.002, 1e-4, 0.2]
-    assert asked().target_quantity == "friction_coefficient"
+    assert asked().target_quantity == "friction_coefficient_corrected"
     assert asked(scene=replace(HARD, friction=rf.Friction())).target_quantity == "contact_area"
 
 

@@ -33,7 +33,7 @@ def _rows(scene: rf.Scene, relative: float, loads: tuple[float, ...] = LOADS, gr
     """Friction of the model without noise."""
     found = []
     for load in loads:
-        mu = rf.solve(replace(scene, load=load), grid).friction_coefficient
+        mu = rf.solve(replace(scene, load=load), grid).friction_coefficient_corrected
         found.append(Row(load, mu, relative * mu))
     return found
 

@@ -189,7 +189,7 @@ class Counted(rf.Sphere):
         self.sampled.append(grid.shape[0])
         return super().sample(grid, offset)
 
-    def cautions(self, grid: Grid) -> tuple[str, ...]:
+    def notes(self, grid: Grid) -> tuple[str, ...]:
         return ("counted by hand",)
 
 

@@ -12,7 +12,7 @@ import pytest
 import refimpl as rf
 from refimpl.scene.parameters import check_tolerances, differentiable_parameters, parameters, with_parameter
 from refimpl.sensitivities.budget import budget
-from refimpl.sensitivities.fixed_contact import FixedContact, Response
+from refimpl.sensitivities.fixed_contact import FixedContact, LinearResponse
 from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity, friction_slopes, sensitivity
 
 STEEL, POLYMER = rf.Material(E=200e9, nu=0.3), rf.Material(E=2.5e9, nu=0.38)
@@ -295,7 +295,7 @@ def test_solves_that_do_not_converge_are_not_compared(
 def test_a_linear_solve_that_fails_says_so(solution: rf.Solution, monkeypatch: pytest.MonkeyPatch) -> None:
     plain = FixedContact.response
 
-    def unsolved(self: FixedContact, change: Any) -> Response:
+    def unsolved(self: FixedContact, change: Any) -> LinearResponse:
         return plain(self, change)._replace(residual=0.1)
 
     monkeypatch.setattr(FixedContact, "response", unsolved)

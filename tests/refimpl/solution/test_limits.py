@@ -20,8 +20,8 @@ from refimpl.model.forces import Forces, plasticity_index
 from refimpl.model.problem import Terms
 from refimpl.planning import plan
 from refimpl.planning.term_effects import Effect
+from refimpl.solution.evidence import Evidence
 from refimpl.solution.limits import (
-    Evidence,
     Limit,
     ModelWarning,
     model_warnings,
@@ -56,8 +56,10 @@ def named(s: rf.Solution) -> dict[Limit, ModelWarning]:
 
 def evidence(s: rf.Solution, scene: rf.Scene, **changes: object) -> Evidence:
     """What the limits of a solution are compared with, but for some changes."""
-    own = Evidence(scene, s.problem, s.plan, state_of(s), s.excluded, s.slope_error, s.neglected)
-    return replace(own, **changes)  # type: ignore[arg-type]  # fields of an Evidence
+    given = {name: changes.pop(name) for name in ("problem", "state") if name in changes}
+    own = replace(s.evidence, scene=scene, **given)  # type: ignore[arg-type]  # fields of an Evidence
+    vars(own).update(changes)  # which it computes when first read
+    return own
 
 
 def test_a_smooth_ball_leaves_no_limit() -> None:

@@ -222,11 +222,11 @@ def test_taus_states_are_the_same_on_any_window(oblique: bool) -> None:
     """Also where shares of tau beside the contact meet a window's edge."""
     problem = problem_of(FAINT, 80, oblique=oblique)
     everywhere = level_solver(problem).result(1e-8)
-    result = state = solve_fft(problem, 1e-8, Counter())
+    result = solve_fft(problem, 1e-8, Counter())
     assert everywhere.status is result.status is rf.Status.CYCLED
     assert np.array_equal(result.excluded, everywhere.excluded)
     assert np.abs(result.pressure - everywhere.pressure).max() <= 1e-6 * everywhere.pressure.max()
-    assert state.certificate.satisfies(1e-8)
+    assert result.certificate.satisfies(1e-8)
 
 
 def random_scene(seed: int) -> rf.Scene:

@@ -15,9 +15,9 @@ import pytest
 import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.grid import Grid
+from refimpl.measured import MeasuredSurface, readers
 from refimpl.measured.untrusted import read_untrusted
-from refimpl.surfaces import MeasuredSurface, readers
-from tests.refimpl.measured.measured_surface import (
+from tests.refimpl.surfaces.measured import (
     DX,
     DY,
     NX,

@@ -15,9 +15,9 @@ import SurfaceTopography
 
 from refimpl.errors import InputError
 from refimpl.grid import Grid
+from refimpl.measured import MeasuredSurface, missing_points
 from refimpl.measured.readers import read
 from refimpl.measured.reading import ARRAY, IMAGE
-from refimpl.surfaces import MeasuredSurface, missing_points
 from tests.refimpl.surfaces import instrument_writers as write
 from tests.refimpl.surfaces.instrument_writers import MAP, MISSING, NX, NY, PIXEL, Writer, sur_bytes
 

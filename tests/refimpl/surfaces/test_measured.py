@@ -12,12 +12,13 @@ from scipy.interpolate import RectBivariateSpline
 
 from refimpl.errors import InputError
 from refimpl.grid import Grid
+from refimpl.measured import MeasuredSurface
 from refimpl.measured.areal_parameters import Spectrum
 from refimpl.measured.detrending import DEGREES, fit
 from refimpl.measured.missing_points import MAX_ELIMINATED, fill
 from refimpl.measured.readers import read
-from refimpl.surfaces import MeasuredSurface, SurfaceWarning
-from tests.refimpl.measured.measured_surface import (
+from refimpl.surfaces import SurfaceWarning
+from tests.refimpl.surfaces.measured import (
     DX,
     DY,
     NX,

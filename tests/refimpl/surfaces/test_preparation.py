@@ -11,12 +11,12 @@ import pytest
 
 from refimpl.errors import InputError
 from refimpl.grid import Grid
+from refimpl.measured import MeasuredSurface
 from refimpl.measured.detrending import fit_form
 from refimpl.measured.preparation import gaussian_filter, prepare
-from refimpl.measured.reading import Reading
+from refimpl.measured.reading import RawHeights
 from refimpl.measured.roughness_fit import _drawn, _gaussian_psd
-from refimpl.surfaces import MeasuredSurface
-from tests.refimpl.measured.measured_surface import quietly
+from tests.refimpl.surfaces.measured import quietly
 
 PIXEL = (1e-6, 1.5e-6)
 X, Y = np.arange(96.0), np.arange(64.0)
@@ -86,8 +86,8 @@ def test_a_form_is_told_with_its_radius(tmp_path: Path) -> None:
 # --- outliers ---
 
 
-def reading_of(z: np.ndarray, pixel: tuple[float, float] = PIXEL) -> Reading:
-    return Reading(z, pixel, "map", "by hand")
+def reading_of(z: np.ndarray, pixel: tuple[float, float] = PIXEL) -> RawHeights:
+    return RawHeights(z, pixel, "map", "by hand")
 
 
 def test_outliers_become_missing_and_nothing_else() -> None:

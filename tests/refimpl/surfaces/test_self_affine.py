@@ -20,7 +20,7 @@ import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
 from refimpl.surfaces import SelfAffineRoughness, SurfaceWarning, surface_from_dict, waves
-from refimpl.surfaces.waves import MAX_WAVES, Torus
+from refimpl.surfaces.waves import MAX_WAVES, PeriodicLattice
 from refimpl.surfaces.white_noise import STREAM, white_noise
 
 SIDE = 1e-3
@@ -324,7 +324,7 @@ def falling(qx: Array, qy: Array) -> Array:
 @pytest.mark.parametrize("shear", [0.0, 0.37, -2.0])
 @pytest.mark.parametrize("count", [(15, 25), (70, 3), (0, 4), (64, 63)])
 def test_the_field_is_the_plain_sum_of_waves(shear: float, count: tuple[int, int]) -> None:
-    torus = Torus((1.3, 2.1), count, shear)
+    torus = PeriodicLattice((1.3, 2.1), count, shear)
     x, y = np.random.default_rng(3).uniform(-3, 5, (2, 12))
     k, across = (np.arange(-n, n + 1.0) for n in count)
     qx, qy = torus.wave_vectors(k, across)
@@ -338,7 +338,7 @@ def test_the_field_is_the_plain_sum_of_waves(shear: float, count: tuple[int, int
 
 
 def test_mean_squares_are_the_sums_over_all_waves() -> None:
-    torus = Torus((1.3, 2.1), (15, 25), 0.4)
+    torus = PeriodicLattice((1.3, 2.1), (15, 25), 0.4)
     qx, qy = torus.wave_vectors(np.arange(-15, 16.0), np.arange(-25, 26.0))
     power = falling(qx, qy) ** 2
     expected = power.sum(), (power * (qx**2 + qy**2)).sum()
@@ -346,7 +346,7 @@ def test_mean_squares_are_the_sums_over_all_waves() -> None:
 
 
 def test_wave_vectors_are_the_gradients_of_the_phases() -> None:
-    torus = Torus((1.3, 2.1), (3, 3), 0.4)
+    torus = PeriodicLattice((1.3, 2.1), (3, 3), 0.4)
     qx, qy = torus.wave_vectors(np.array([2.0]), np.array([-1.0]))
 
     def phase(x: float, y: float) -> float:
@@ -371,10 +371,10 @@ def test_noise_of_waves_is_not_the_noise_of_lattices() -> None:
 
 def test_a_torus_holds_so_many_waves_and_no_more() -> None:
     refused = []
-    torus = Torus.holding((2.0, 1.0), (0.5, 0.25), lambda *why: refused.append(why))
+    torus = PeriodicLattice.holding((2.0, 1.0), (0.5, 0.25), lambda *why: refused.append(why))
     assert torus.waves == (4, 4)
     assert not refused
-    Torus.holding((2.0, 1.0), (2.0 / 8191, 1.0), lambda *why: refused.append(why))
+    PeriodicLattice.holding((2.0, 1.0), (2.0 / 8191, 1.0), lambda *why: refused.append(why))
     ((factor, limit),) = refused
     assert factor == pytest.approx((2 * 8191 + 1) / MAX_WAVES)
     assert limit == "8192 waves an axis"

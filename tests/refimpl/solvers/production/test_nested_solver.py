@@ -13,6 +13,7 @@ from refimpl.grid import Mask, Window
 from refimpl.model.certificate import State, certify
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
+from refimpl.model.state import SolverResult
 from refimpl.operators.fft import Counter
 from refimpl.operators.influence import window_influence
 from refimpl.solvers.production import nested_solver
@@ -53,7 +54,7 @@ def test_the_certificate_knows_all_tractions_and_transforms_no_more(rows: slice)
     pressure[3:5, 6:8], traction[rows, 6:9] = 1e7, 1e6
     traction[3:5, 6:8] = 1e6
     flat = Slopes.flat((16, 16))
-    result = State(pressure, traction, flat, rf.Status.CONVERGED, excluded=pressure > 0)
+    result = SolverResult(pressure, traction, flat, rf.Status.CONVERGED, excluded=pressure > 0)
     found, everything = Counter(), Counter()
     state = certified(problem, result, found)
     operator = window_influence(problem.grid, problem.direction, counter=everything)
