@@ -77,6 +77,5 @@ class DenseInfluence:
         if angle is None:
             return np.fft.ifft2(2 * np.pi / np.sqrt(squared)).real
         q_s = math.cos(angle) * q_x + math.sin(angle) * q_y
-        return np.fft.ifft2(
-            -2j * np.pi * q_s / squared
-        ).real  # of odd fields no sine at the Nyquist frequency
+        # real part: odd fields have no sine at the Nyquist frequency
+        return np.fft.ifft2(-2j * np.pi * q_s / squared).real

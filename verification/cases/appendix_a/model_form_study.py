@@ -11,14 +11,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 import refimpl as rf
 from appendix_a.contact_fem import ends
 from appendix_a.contact_fem.scene import Material, WavyPair
 from appendix_a.contact_fem.sequence import Estimate, Sequence, slide_on_three_meshes
 
-Array = NDArray[np.float64]
 Numbers = Mapping[str, Estimate]
 
 STEEL, COPPER = Material(200e9, 0.3), Material(118e9, 0.3)
