@@ -1,4 +1,4 @@
-"""mu summed over elements and corrected, with its bar, over the grid. Usage: corrected_friction.py [PICTURE]"""
+"""mu summed over elements and corrected with its bar over the grid. Usage: corrected_friction.py [PICTURE]"""
 
 import sys
 

@@ -34,7 +34,7 @@ from verification.framework.case import jsonable
 from verification.framework.files import write_result
 from verification.framework.provenance import provenance
 
-ASKED: dict[Quantity, float] = {"friction_coefficient": 0.02, "contact_area_corrected": 0.05}
+ASKED: dict[Quantity, float] = {"friction_coefficient_corrected": 0.02, "contact_area_corrected": 0.05}
 SIZES = [M for M in GRID_SIZES if M < REFERENCE]
 
 

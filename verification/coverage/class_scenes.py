@@ -1,4 +1,4 @@
-"""Random scenes by class for the study of error bars: isotropic roughness, lays, grooves, maps, caps."""
+"""Random scenes by class for the study of error bars: roughness, lays, grooves, maps, caps, borders."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.grid import Array
 from refimpl.model.materials import Pair
-from verification.coverage.drawing import SIDE, Ball, Dice, Wave
+from verification.coverage.drawing import SIDE, Ball, Dice, Wave, measured_like
 from verification.framework.files import Progress
 
 RMS = 1e-7  # m
@@ -33,6 +33,8 @@ class _Draw(Dice):
         )
         self.modulus = Pair(lower=self.lower, upper=self.upper).reduced_modulus
         self.direction = self.angle()
+        self.ball = not self.periodic  # presses the surface, instead of a flat
+        self.pressed_share, self.radii = (0.05, 0.6), (0.1, 0.3)  # of full contact, and of the shorter side
 
     def lengths(self) -> tuple[float, float]:
         """Correlation lengths of a lay, three to ten to one within the shorter side."""
@@ -63,9 +65,53 @@ def _oblique(draw: _Draw) -> rf.Surface:
     return rf.GaussianRoughness(RMS, lengths, draw.seed, lay=math.radians(degrees))
 
 
-def _grooves(draw: _Draw) -> rf.Surface:
+def _grooves(draw: _Draw, *, zigzag: bool = False) -> rf.Surface:
     phase = draw.angle()
-    return Wave(RMS, int(draw.rng.integers(1, 5)), phase, int(draw.rng.integers(2)))
+    number, along_y = int(draw.rng.integers(1, 5)), bool(draw.rng.integers(2))
+    return Wave(RMS, (0, number) if along_y else (number, 0), phase, zigzag)
+
+
+def _facets(draw: _Draw) -> rf.Surface:
+    return _grooves(draw, zigzag=True)
+
+
+def _strips(draw: _Draw) -> rf.Surface:
+    """Grooves along a direction of small whole numbers on a square."""
+    draw.size = (SIDE, SIDE)
+    m, n = ((1, 1), (1, 2), (2, 1), (1, 3), (2, 3), (3, 2))[draw.rng.integers(6)]
+    number = int(draw.rng.integers(1, 3))
+    return Wave(RMS, (m * number, n * number * int(draw.rng.choice([-1, 1]))), draw.angle())
+
+
+def _few_asperities(draw: _Draw) -> rf.Surface:
+    return rf.GaussianRoughness(RMS, min(draw.size) * draw.log(0.25, 0.45), draw.seed)
+
+
+def _cut_off(draw: _Draw) -> rf.Surface:
+    draw.periodic = draw.ball = False
+    return _isotropic(draw)
+
+
+def _few_elements(draw: _Draw) -> rf.Surface:
+    """A smooth ball whose contact is a few elements wide; the roughness only scales its radius."""
+    draw.periodic, draw.ball, draw.radii = False, True, (0.02, 0.06)
+    return Wave(RMS, (0, 0), 0.5 * math.pi)
+
+
+def _slender(draw: _Draw) -> rf.Surface:
+    draw.size = (SIDE, SIDE / 4) if draw.rng.integers(2) else (SIDE / 4, SIDE)
+    return rf.GaussianRoughness(RMS, min(draw.size) * draw.log(0.2, 0.6), draw.seed)
+
+
+def _nearly_full(draw: _Draw) -> rf.Surface:
+    draw.periodic, draw.ball, draw.pressed_share = True, False, (1.5, 5.0)
+    return _isotropic(draw)
+
+
+def _data(draw: _Draw) -> rf.Surface:
+    draw.size, draw.periodic, draw.ball = (SIDE, SIDE), False, True
+    points, hurst = int(draw.rng.integers(100, 301)), float(draw.rng.uniform(0.6, 0.9))
+    return rf.ArraySurface(measured_like(draw.rng, points, RMS, hurst, roll_off=int(draw.rng.integers(3, 7))))
 
 
 def _self_affine(draw: _Draw) -> rf.Surface:
@@ -88,6 +134,14 @@ CLASSES: dict[str, Kind] = {
     "grooves": _grooves,
     "self-affine": _self_affine,
     "capped": _isotropic,
+    "facets": _facets,
+    "strips between the axes": _strips,
+    "few asperities": _few_asperities,
+    "cut off by the border": _cut_off,
+    "few elements": _few_elements,
+    "4:1 rectangles": _slender,
+    "nearly full": _nearly_full,
+    "ball on data": _data,
 }
 
 
@@ -164,12 +218,12 @@ def scene(kind: str, seed: int, classes: Mapping[str, Kind] = CLASSES) -> rf.Sce
     grid = probe.grid(128)
     slope = math.sqrt(sum(float(np.mean(g**2)) for g in grid.gradient(surface.sample(grid))))
     height = float(np.std(surface.sample(grid)))
-    if draw.periodic:
+    if not draw.ball:
         pressed = 0.5 * draw.modulus * slope  # in contact, by Bush et al. 1975
-        share = draw.log(0.05, 0.6)
+        share = draw.log(*draw.pressed_share)
         return _with_friction(draw, kind, probe, share * pressed * SIDE * min(draw.size), pressed)
-    a = min(draw.size) * draw.log(0.1, 0.3)
-    ball = Ball(draw.modulus, a**2 / (height * draw.log(1.5, 30)), a)
+    a = min(draw.size) * draw.log(*draw.radii)
+    ball = Ball(draw.modulus, a**2 / ((height or RMS) * draw.log(1.5, 30)), a)
     pressed = max(ball.pressure, 0.5 * draw.modulus * slope)
     under = replace(probe, upper=rf.Body(draw.upper, rf.Sphere(ball.R)))
     return _with_friction(draw, kind, under, ball.load, pressed)

@@ -69,18 +69,26 @@ class Barrel(rf.Surface):
 
 @dataclass(frozen=True)
 class Wave(rf.Surface):
-    """``amplitude cos(2 pi n c / length + phase)`` along one axis: grooves (m)."""
+    """``amplitude cos(2 pi (m x / Lx + n y / Ly) + phase)``: grooves (m), or a zigzag of that height.
+
+    Numbers m and n are those of periods along the sides.
+    """
 
     amplitude: float
-    number: int
+    numbers: tuple[int, int]
     phase: float
-    axis: int
+    zigzag: bool = False
     kind: ClassVar[str] = "wave"
 
     def _sample(self, grid: rf.Grid, offset: tuple[float, float]) -> Array:
-        c, length = (grid.x, grid.y)[self.axis] + offset[self.axis], grid.lengths[self.axis]
-        z = self.amplitude * np.cos(2 * math.pi * self.number * c / length + self.phase)
-        return np.broadcast_to(z[:, None] if self.axis == 0 else z[None, :], grid.shape).copy()
+        along, across = (
+            2 * math.pi * number * (centres + shift) / length
+            for number, centres, shift, length in zip(
+                self.numbers, (grid.x, grid.y), offset, grid.lengths, strict=True
+            )
+        )
+        z = np.cos(along[:, None] + across[None, :] + self.phase)
+        return np.asarray(self.amplitude * (1 - 2 / math.pi * np.arccos(z) if self.zigzag else z))
 
 
 @dataclass(frozen=True)
@@ -94,8 +102,8 @@ class Waves(rf.Surface):
 
     def _sample(self, grid: rf.Grid, offset: tuple[float, float]) -> Array:
         x, y = (
-            Wave(1.0, number, phase, axis)._sample(grid, offset)
-            for axis, (number, phase) in enumerate(zip(self.numbers, self.phases, strict=True))
+            Wave(1.0, numbers, phase)._sample(grid, offset)
+            for numbers, phase in zip(((self.numbers[0], 0), (0, self.numbers[1])), self.phases, strict=True)
         )
         return np.asarray(self.amplitude * (x + y))
 

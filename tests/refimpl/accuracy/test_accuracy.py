@@ -146,7 +146,7 @@ def test_bars_of_grooves_hold_the_exact_numbers(axis: int, share: float) -> None
     exact = Exact(mean_pressure=mean, amplitude=AMPLITUDE, wavelength=SIDE, modulus=MODULUS)
     tau, area = 0.1 * mean / share, exact.contact_fraction * SIDE**2
     for place in range(8):
-        wave = Wave(AMPLITUDE, 1, 2 * math.pi * (0.13 + place / 8 / 64), axis)
+        wave = Wave(AMPLITUDE, (1 - axis, axis), 2 * math.pi * (0.13 + place / 8 / 64))
         scene = rf.Scene(
             rf.Body(STEEL, rf.Flat()), rf.Body(COPPER, wave), rf.Friction(tau=tau, beta=0.08),
             mean * SIDE**2, SIDE, periodic=True,

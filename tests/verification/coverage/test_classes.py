@@ -18,14 +18,15 @@ def test_references_known_values() -> None:
     """The edge's 0.79 of 1e-8; straight ones, 1e-9, have 0.21 in the place of 0.79 (pi - 1 + ln 2) / 24."""
     straight, grid = Made(faces=10, squares=16), Made(element_area=1e-10)
     own = {"straight": straight, "grid": grid, "edge": 1e-8, "dmu_dA": 1e5, "peak": Made(height=6)}
-    numbers = dict(zip(classes.NUMBERS, (3e-6, 2e-6, 0.4, 5, 7), strict=True))
+    numbers = dict(zip(classes.NUMBERS, (0.3, 0.4, 3e-6, 2e-6, 5, 7), strict=True))
     area, bound = 3e-6 - 7.9e-9 - 0.116690e-9, 0.12e-8 + 0.5 * 4 * 1e-10
+    mu = 0.4 + 1e5 * (area - 3e-6)
     for yields, peak in ((False, 6), (True, 5)):
         bars = {name: {"a": 0.1, "b": 0.2} for name in numbers}
         finest: Any = Made(**numbers, uncertainty=bars, features=Made(**own, yields=yields))
         values, doubts = zip(*(classes.reference(finest, name) for name in numbers), strict=True)
-        assert values == pytest.approx((area, area, 0.4 + 1e5 * (area - 3e-6), peak, 7), rel=1e-9)
-        assert doubts == pytest.approx((bound, bound, 1e5 * bound, 0.3, 0.3))
+        assert values == pytest.approx((mu, mu, area, area, peak, 7), rel=1e-9)
+        assert doubts == pytest.approx((1e5 * bound, 1e5 * bound, bound, bound, 0.3, 0.3))
 
 
 def test_scenes_are_counted_by_class(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -36,7 +37,7 @@ def test_scenes_are_counted_by_class(tmp_path: Path, monkeypatch: pytest.MonkeyP
     def rows(seed: int, M: int, _: object) -> list[dict[str, object]] | None:
         asked.append(M)
         row = zip(("bar", "error", "reference_bound"), ends.get(seed, ()), strict=False)
-        return None if seed == 5 else [{**dict(row), "number": "approach"}]
+        return None if seed == 5 else [{**dict(row), "number": "approach", "too_large": True}]
 
     monkeypatch.setattr(classes, "single_grid_rows", rows)
     monkeypatch.setattr(classes, "scene", lambda kind, seed, _: seed)
@@ -47,12 +48,13 @@ def test_scenes_are_counted_by_class(tmp_path: Path, monkeypatch: pytest.MonkeyP
     every = found["table"][-1]
     assert [every[key] for key in ("scenes", "held", "held_at_worst", "usable")] == [4, 0.75, 0.5, 0.75]
     assert (every["held_of_usable"], every["median_bar_over_error"]) == pytest.approx((2 / 3, 2.5), rel=1e-5)
+    assert every["bias_over_bar"] == pytest.approx(1.6 / 9.826, rel=1e-5)
     assert every["p"] == pytest.approx(1 - 0.92**4, rel=1e-5)  # probability of three of four, or fewer
 
 
 def test_bars_that_hold_more_often_than_they_need_are_no_failure() -> None:
     """All of 100: p is 1, for only too few count. 90 of 100: P(at most 90, each at 92 %) is 0.2780."""
-    row = {"error": 0.1, "bar": 0.2, "reference_bound": 0.0}
+    row = {"error": 0.1, "bar": 0.2, "reference_bound": 0.0, "too_large": True}
     missed = row | {"error": 0.3}
     assert classes.summary(100 * [row])["p"] == pytest.approx(1.0)
     assert classes.summary(90 * [row] + 10 * [missed])["p"] == pytest.approx(0.2780, abs=5e-5)
@@ -79,7 +81,7 @@ def test_a_coarse_grid_that_is_right_by_chance_is_not_the_cheapest(monkeypatch: 
 
     def solved(one: rf.Scene, grid: int = 96, **_: object) -> Made:
         return Made(
-            friction_coefficient=mu[grid],
+            friction_coefficient_corrected=mu[grid],
             contact_area_corrected=2e-6,
             cost=Made(point_logs=float(grid**2)),
             problem=Made(grid=Made(shape=(48, grid))),
@@ -100,7 +102,7 @@ def test_a_coarse_grid_that_is_right_by_chance_is_not_the_cheapest(monkeypatch: 
 
 def test_a_smooth_ball_costs_about_the_cheapest_grid() -> None:
     """The smooth ball of Table 1: mu to 0.02 takes few elements, and the forecast names the last grid."""
-    mu = next(row for row in costs(rf.read_scene("table1-smooth")) if row["number"] == "friction_coefficient")
+    mu = next(row for row in costs(rf.read_scene("table1-smooth")) if row["number"].startswith("friction"))
     assert mu["met"]
     assert mu["cheapest"] in SIZES
     assert mu["last"] >= mu["cheapest"]

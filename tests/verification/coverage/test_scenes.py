@@ -187,8 +187,13 @@ def test_heights_of_barrels_and_waves() -> None:
     waves = Waves(2e-6, (3, 2), (0.3, 0.5)).heights(grid, (5e-5, 2e-5))
     along_x, along_y = math.cos(1.8 * math.pi + 0.3), math.cos(1.2 * math.pi + 0.5)
     assert waves[0, 0] == pytest.approx(2e-6 * (along_x + along_y))
-    for axis, (number, phase, expected) in enumerate(((3, 0.3, along_x), (2, 0.5, along_y))):
-        grooves = Wave(2e-6, number, phase, axis).heights(grid, (5e-5, 2e-5))
+    for axis, (numbers, phase, expected) in enumerate((((3, 0), 0.3, along_x), ((0, 2), 0.5, along_y))):
+        grooves = Wave(2e-6, numbers, phase).heights(grid, (5e-5, 2e-5))
         assert grooves.shape == (2, 2)
         assert grooves[0, 0] == pytest.approx(2e-6 * expected)
         assert np.ptp(grooves, axis=1 - axis).max() == 0
+    oblique, zigzag = (
+        Wave(2e-6, (3, 2), 0.3, straight).heights(grid, (5e-5, 2e-5))[0, 0] for straight in (False, True)
+    )
+    assert oblique == pytest.approx(2e-6 * math.cos(3.0 * math.pi + 0.3))
+    assert zigzag == pytest.approx(2e-6 * (1 - 2 / math.pi * (math.pi - 0.3)))
