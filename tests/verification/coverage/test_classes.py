@@ -104,8 +104,7 @@ def test_a_smooth_ball_costs_about_the_cheapest_grid() -> None:
     """The smooth ball of Table 1: mu to 0.02 takes few elements, and the forecast names the last grid."""
     mu = next(row for row in costs(rf.read_scene("table1-smooth")) if row["number"].startswith("friction"))
     assert mu["met"]
-    assert mu["cheapest"] in SIZES
-    assert mu["last"] >= mu["cheapest"]
+    assert mu["last"] <= mu["cheapest"] == SIZES[0]  # the grids that open the refinement suffice
     assert 0.5 <= mu["forecast"] / mu["last"] <= 2
     assert mu["cost"] > 0  # below 1 where the last grid starts from the opening's answer
 
