@@ -278,15 +278,6 @@ def test_groups_above_it_count_and_dropped_pages_are_free(system: Path) -> None:
     assert free_memory() == 2 * GB + GB // 2
 
 
-def test_groups_of_version_1(system: Path) -> None:
-    (system / "proc/self/cgroup").write_text("5:cpu:/x\n4:memory:/a\n0::/\n")
-    folder = system / "cgroup/memory/a"
-    folder.mkdir(parents=True)
-    (folder / "memory.limit_in_bytes").write_text(f"{5 * GB}\n")
-    (folder / "memory.usage_in_bytes").write_text(f"{GB}\n")
-    assert free_memory() == 4 * GB
-
-
 @pytest.mark.parametrize(
     ("which", "left"), [(resource.RLIMIT_AS, 2 * GB), (resource.RLIMIT_DATA, 5 * GB // 2)]
 )

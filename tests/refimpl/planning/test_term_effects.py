@@ -99,6 +99,8 @@ def test_on_a_finer_grid_as_many_times_more_elements_touch() -> None:
         found = effects_in(("oblique",), problem, pressure, CONTACT, elements)
         scales = Scales(replace(contact, elements=expected), problem.pair, problem.friction)
         assert found == {"oblique": effects_of("oblique", scales)}
+    assert effects_in((), problem, pressure, CONTACT) == {}
+    assert effects_in(("oblique",), problem, 0 * pressure, CONTACT) == {}
 
 
 def test_effects_are_parts_in_each_numbers_unit() -> None:
