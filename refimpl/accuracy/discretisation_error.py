@@ -118,7 +118,9 @@ def estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
     if last.yields:
         found["max_pressure"] = Estimate(last.numbers["max_pressure"], 0.0)
     else:
-        found["plastic_area"] = Estimate(0.0, _area_that_may_yield(last, found["max_pressure"]))
+        area = _area_that_may_yield(last, found["max_pressure"])
+        is_open = area > 0 and math.isinf(found["contact_area"].half_width)
+        found["plastic_area"] = Estimate(0.0, math.inf if is_open else area)
     return found
 
 

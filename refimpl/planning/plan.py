@@ -25,6 +25,8 @@ _GROWTH = 1.5  # a window over the contact expected from heights: 0.7 to 2.3 of 
 _DENSE_MATRICES = 10
 LARGEST_DENSE = 64 * 64  # elements; `refimpl.plain` takes no more
 
+_RESTORED = "restored: the solved contact shows that it matters"
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -77,13 +79,10 @@ class Plan:
     def restore(self, problem: Problem, name: str) -> Plan:
         """Return the plan with a neglected term that the solved contact shows to matter; slopes stay."""
         requested = replace(self.requested, **{name: True})
-        restored = tuple(
-            replace(term, reason="restored: the solved contact shows that it matters")
-            if term.name == name
-            else term
-            for term in choose(problem, self.contact, requested, self.budget, for_mu=self.includes("oblique"))
-        )
-        return replace(self, terms=restored, requested=requested)
+        chosen = choose(problem, self.contact, requested, self.budget, for_mu=self.includes("oblique"))
+        restored = {name} | {term.name for term in self.terms if term.reason == _RESTORED}
+        terms = tuple(replace(t, reason=_RESTORED) if t.name in restored else t for t in chosen)
+        return replace(self, terms=terms, requested=requested)
 
 
 def make_plan(

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.accuracy.contact_edge import mean_excess
 from refimpl.accuracy.discretisation_error import estimates
 from refimpl.accuracy.first_contact import (
     at_first_contact,
@@ -21,6 +22,7 @@ from refimpl.accuracy.grid_features import GridFeatures, slope_sampling_error
 from refimpl.accuracy.peak import NO_PEAK, Peak, deepest, highest
 from refimpl.driver.reference import solve_reference
 from refimpl.grid import Array, Grid
+from refimpl.grid.straight_edges import NO_STRAIGHT_EDGES
 from refimpl.grid.symmetry import symmetry_multiplicity
 from refimpl.model.certificate import State
 from refimpl.model.forces import EDGE_SHARE
@@ -236,10 +238,12 @@ def test_under_a_load_only_the_approach_hangs_on_the_touch() -> None:
 
 
 def test_a_touch_that_nothing_is_known_of_leaves_everything_open() -> None:
-    lone = replace(pressed(64), first_contact=Peak(0.0, 1e-9, 1.0))
+    lone = replace(pressed(64), first_contact=Peak(0.0, 1e-9, 1.0), cap=2e9)
     assert math.isinf(first_contact_error(lone))
     assert all(math.isinf(bound) for bound in first_contact_bounds(lone).values())
     assert all(math.isinf(estimate.half_width) for estimate in estimates([lone]).values())
+    without_hardness = estimates([replace(lone, cap=math.inf)])
+    assert {name for name, e in without_hardness.items() if e.half_width == 0} == {"plastic_area"}
 
 
 def test_shear_that_bears_the_whole_force_leaves_everything_open() -> None:
@@ -262,12 +266,15 @@ def test_powers_of_the_approach_in_any_unit_of_force(unit: float) -> None:
         pressed(64),
         numbers=numbers,
         dmu_dA=0.1,
+        edge=0.3,
+        straight=NO_STRAIGHT_EDGES,
         peak=Peak(2 * unit, 1.0, 0.0),
         first_contact=Peak(1e-6 / 3, 5e-6, 0.0),
     )
     s = 0.75
     force, area = unit * s**1.5, 3.0 * s
     friction = 0.1 * unit * area + (0.5 - 0.3) * unit * s**1.5
+    corrected = friction - 0.1 * unit * mean_excess(0.3, 0.0, area)
     got = at_first_contact(found)
     assert got.numbers == pytest.approx(
         {
@@ -280,6 +287,8 @@ def test_powers_of_the_approach_in_any_unit_of_force(unit: float) -> None:
             "max_pressure": unit * s**0.5,
             "friction_force": friction,
             "friction_coefficient": friction / force,
+            "friction_force_corrected": corrected,
+            "friction_coefficient_corrected": corrected / force,
         }
     )
     assert got.peak.height == pytest.approx(2 * unit * s**0.5)

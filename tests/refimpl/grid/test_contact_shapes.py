@@ -34,11 +34,6 @@ def test_elements_that_are_square_to_rounding_are_square() -> None:
     assert symmetry_multiplicity(disc(24, 16, radius=6.2), grid) == 8
 
 
-@pytest.mark.parametrize("grid", [*SQUARE.values(), *OBLONG.values()])
-def test_no_contact_counts_once(grid: Grid) -> None:
-    assert symmetry_multiplicity(np.zeros((24, 24), dtype=bool), grid) == 1
-
-
 @pytest.mark.parametrize("grids", [SQUARE, OBLONG])
 def test_the_place_of_a_contact_does_not_count(grids: dict[bool, Grid]) -> None:
     half = disc() & (np.arange(24) < 12)

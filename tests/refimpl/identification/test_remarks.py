@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
 import pytest
 
 import refimpl as rf
 from refimpl.identification import Identification, Interval, Row, identify
-from refimpl.identification.design import Proposal, trial_responses
+from refimpl.identification.design import Proposal
 from refimpl.identification.ensemble import is_random, redrawn
 from refimpl.identification.forward import Forward, Response
 from refimpl.identification.laws import Law
@@ -109,20 +107,6 @@ def test_each_remark_by_itself_and_none_at_the_thresholds(
     texts = notes(replace(found, fitted=fitted, **others))
     assert len(texts) == bool(said)
     assert said in "".join(texts)
-
-
-def test_trial_loads_are_a_tenth_to_ten_times_the_measured_ones() -> None:
-    ends = {0.4: rf.InputError("load", 0.4, "more"), 1.2: ArithmeticError()}
-
-    def respond(scene: rf.Scene, *_: object) -> Response:
-        if scene.load in ends:
-            raise ends.pop(scene.load)
-        return replace(NONE, border=0.02 if scene.load < 200 else 0.03)
-
-    forward: Any = SimpleNamespace(respond=respond)
-    trials = trial_responses(SCENE, [Row(50.0, 1.0, 0.1), Row(4.0, 1.0, 0.1)], forward, np.zeros(2))
-    assert [load for load, _ in trials] == [150.0]
-    assert not ends
 
 
 def test_random_parts_of_both_bodies_are_redrawn() -> None:

@@ -102,6 +102,20 @@ def test_a_wrong_load_or_approach_is_seen() -> None:
     assert missed.penetration == pytest.approx(1e-3, rel=0.01)
 
 
+def test_faint_pressures_are_judged_like_others_until_displacements_vanish() -> None:
+    """At the least approach nothing is known of the mean separation: the load error is infinite."""
+    smooth = rf.read_scene("table1-smooth")
+    pressed = [
+        rf.solve(smooth, 16, approach=a, oblique=False, coupled=False, method="dense") for a in (1e-9, 1e-300)
+    ]
+    assert all(s.status is rf.Status.CONVERGED for s in pressed)
+    assert pressed[1].contact_area == pressed[0].contact_area
+    for grid in (3, 16):  # the mean separation of a single element is that least number, or of many none
+        lost = rf.solve(smooth, grid, approach=5e-324, oblique=False, coupled=False)
+        assert lost.max_pressure > 0
+        assert lost.certificate.load_error == np.inf
+
+
 def test_slopes_of_another_state_are_seen() -> None:
     wrong = Slopes(SOLVED.slopes.tan_x + 1e-4 * SOLVED.contact, SOLVED.slopes.tan_y)
     assert judged(slopes=wrong).certificate.slope == pytest.approx(1e-4, rel=1e-6)

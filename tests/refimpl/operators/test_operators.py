@@ -196,6 +196,29 @@ def test_both_kernels_in_one_product_cost_one(grid: Grid, periodic: bool) -> Non
     assert np.abs(found - expected).max() <= 1e-14 * scale
 
 
+def test_kernels_count_by_their_symmetry():
+    def counted(M, source, target):
+        counter = Counter()
+        operator = FFTInfluence(Grid.square(1.0, M), 0.0, source=source, target=target, counter=counter)
+        operator.normal(np.zeros(operator.source.shape))
+        return counter.point_logs
+
+    # 13 offsets an axis, on a circle of 16: even around zero, so an eighth of an application
+    assert counted(7, None, None) == 256 * 8 + 32 * 5
+    # the offsets 1 to 5, on a circle of 6, are not
+    apart = counted(6, Window(0, 2, 0, 2), Window(2, 6, 2, 6))
+    assert apart == pytest.approx(36 * math.log2(36) + 18 * math.log2(18), rel=1e-15)
+    # -2 to 4 and -4 to 2, on a circle of 8: even with one more offset than was asked for
+    for edge in (Window(0, 3, 2, 5), Window(2, 5, 0, 3)):
+        assert counted(5, edge, Window.full((5, 5))) == 64 * 6 + 8 * 3
+    # -3 to 5 on one of 10, with room for -4
+    assert counted(7, Window(1, 4, 1, 4), Window.full((7, 7))) == pytest.approx(
+        100 * math.log2(100) + 12 * math.log2(12), rel=1e-15
+    )
+    # -2 to 5 fill a circle of 8, which then is not even
+    assert counted(6, Window(0, 3, 0, 3), Window.full((6, 6))) == 64 * 6 + 32 * 5
+
+
 def test_counter_counts():
     counter = Counter()
     operator = FFTInfluence(Grid.square(1.0, 4), 0.0, counter=counter)

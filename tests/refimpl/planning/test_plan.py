@@ -165,8 +165,8 @@ def test_accuracy_neglects_terms_and_says_so() -> None:
     assert set(s.neglected) == set(s.plan.neglected)
 
 
-def test_a_term_that_turns_out_to_matter_is_restored(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Estimates a thousand times too small before the solve, and right after it."""
+def test_terms_that_turn_out_to_matter_are_restored(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An estimate a thousand times too small before the solve, and right after it; then slopes as well."""
 
     def small(scales: Scales) -> term_effects.Effect:
         return term_effects.Effect(*(1e-3 * x for x in vars(term_effects.coupled(scales)).values()))
@@ -176,8 +176,9 @@ def test_a_term_that_turns_out_to_matter_is_restored(monkeypatch: pytest.MonkeyP
         ROUGH, lower=rf.Body(rf.Material(2.5e9, 0.1), ROUGH.lower.surface), friction=rf.Friction(0, 0.4)
     )
     s = rf.solve(soft, accuracy=0.05)
-    assert s.plan.includes("coupled")
-    assert "restored" in s.plan.term("coupled").reason
+    for name in ("coupled", "oblique"):
+        assert s.plan.includes(name)
+        assert "restored" in s.plan.term(name).reason
 
 
 def test_slopes_neglected_in_a_frictionless_scene_leave_mu_open() -> None:
@@ -275,15 +276,6 @@ def test_groups_above_it_count_and_dropped_pages_are_free(system: Path) -> None:
     group(system / "cgroup/a/b", "max")
     group(system / "cgroup/a", f"{3 * GB}", **{"memory.stat": f"anon 1\ninactive_file {GB // 2}\n"})
     assert free_memory() == 2 * GB + GB // 2
-
-
-def test_groups_of_version_1(system: Path) -> None:
-    (system / "proc/self/cgroup").write_text("5:cpu:/x\n4:memory:/a\n0::/\n")
-    folder = system / "cgroup/memory/a"
-    folder.mkdir(parents=True)
-    (folder / "memory.limit_in_bytes").write_text(f"{5 * GB}\n")
-    (folder / "memory.usage_in_bytes").write_text(f"{GB}\n")
-    assert free_memory() == 4 * GB
 
 
 @pytest.mark.parametrize(

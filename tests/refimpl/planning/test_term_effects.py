@@ -50,8 +50,8 @@ def test_a_solved_contact_is_weighted_by_its_pressure() -> None:
 
 
 def test_slope_terms_by_hand() -> None:
-    """mu = 0.2 + 1 MPa / 10 MPa; tilts pi c 1.4 (0.2 * 16 MPa + 1 MPa), pi c = (1 + nu)(1 - 2 nu) / (2 E)."""
-    lower, upper = ((1 + nu) * (1 - 2 * nu) / 2 / E * 1.4 * 4.2e6 for E, nu in ((2e9, 0.25), (8e9, 0.1)))
+    """mu = 0.2 + 1 MPa / 10 MPa; tilts pi c 2 (0.2 * 16 MPa + 1 MPa), pi c = (1 + nu)(1 - 2 nu) / (2 E)."""
+    lower, upper = ((1 + nu) * (1 - 2 * nu) / 2 / E * 2.0 * 4.2e6 for E, nu in ((2e9, 0.25), (8e9, 0.1)))
     scales = Scales(CONTACT, PAIR, SCENE.friction)
     assert scales.tilts == pytest.approx((lower, upper))
     slope = lower + 4e-4 + 1.5 * 0.002 + 0.4 * 0.01 + 2.0 * 0.1 * 0.02
@@ -69,7 +69,7 @@ def test_coupling_by_hand() -> None:
     strength = (c[0] - c[1]) / sum(a) * 0.3
     local = 0.35 * strength
     area = 2.0 * strength**2 + local / 2 + 2 * math.sqrt(local / 50)
-    tilt = 0.5 * (c[0] - c[1]) * 1.4 * 4.2e6
+    tilt = 0.5 * (c[0] - c[1]) * 2.0 * 4.2e6
     found = effects_of("coupled", Scales(CONTACT, PAIR, SCENE.friction))
     assert found.area == pytest.approx(area)
     assert found.friction == pytest.approx((tilt + local * 0.01 + 0.1 * area) / 0.3)
@@ -99,6 +99,8 @@ def test_on_a_finer_grid_as_many_times_more_elements_touch() -> None:
         found = effects_in(("oblique",), problem, pressure, CONTACT, elements)
         scales = Scales(replace(contact, elements=expected), problem.pair, problem.friction)
         assert found == {"oblique": effects_of("oblique", scales)}
+    assert effects_in((), problem, pressure, CONTACT) == {}
+    assert effects_in(("oblique",), problem, 0 * pressure, CONTACT) == {}
 
 
 def test_effects_are_parts_in_each_numbers_unit() -> None:

@@ -61,13 +61,6 @@ def test_sliding_samples_the_lower_surface_ahead_and_leaves_the_upper(angle: flo
         np.testing.assert_allclose(expected[:-1], still[1:], atol=1e-17)
 
 
-def test_bodies_take_arrays_and_sums() -> None:
-    z = np.ones((16, 16)) * 1e-6
-    together = rf.Body(STEEL, rf.Sphere(0.14) + ROUGH + z)
-    apart = rf.Sphere(0.14).heights(GRID) + ROUGH.heights(GRID) + z
-    np.testing.assert_allclose(together.surface.heights(GRID), apart, rtol=1e-15)
-
-
 def test_a_scenes_grid_has_its_side_and_its_kind() -> None:
     for periodic in (False, True):
         scene = replace(SCENE, periodic=periodic)

@@ -103,7 +103,8 @@ def test_without_xarray_the_extra_is_named(rough: rf.Solution, monkeypatch: pyte
 
 
 SHOWN = {  # value and error in SI, the unit there, and the row
-    "friction_coefficient": (0.1234, 0.002, "1", "friction coefficient mu 0.123 +- 0.002"),
+    "friction_coefficient_corrected": (0.1234, 0.002, "1", "friction coefficient mu 0.123 +- 0.002"),
+    "friction_coefficient": (0.1301, 0.007, "1", "summed over elements 0.130 +- 0.007"),
     "contact_area": (2.5e-6, 3e-7, "m^2", "contact area A 2.5 +- 0.3 mm^2"),
     "contact_area_share": (0.31, 0.04, "1", "A/A0 0.31 +- 0.04"),
     "plastic_area": (0.7e-6, 0.0, "m^2", "plastic area 0.7 mm^2"),

@@ -134,3 +134,13 @@ def test_mixed_updates_drop_their_history_after_ten_and_stagnate_after_thirty() 
     assert control.stagnated
     assert [len({id(m) for m in mixings[i : i + 10]}) for i in (0, 10, 20)] == [1, 1, 1]
     assert len({id(m) for m in mixings}) == 3
+
+
+def test_patience_begins_anew_where_mixing_starts() -> None:
+    control = begun()
+    for _ in range(2):
+        control.record(0.9, 0.9)
+    for _ in range(30):
+        assert not control.stagnated
+        control.record(0.9, 0.9)
+    assert control.stagnated

@@ -87,12 +87,6 @@ def test_a_coarse_height_is_the_mean_of_the_fine_ones(shape: Shape, factor: int)
         np.testing.assert_allclose(getattr(coarse, name), blocks.mean(axis=(1, 3)), rtol=1e-13)
 
 
-def test_without_slopes_the_common_surface_is_not_coarsened() -> None:
-    fine = problem((6, 6))
-    assert fine.mean_surface.any()
-    np.testing.assert_array_equal(coarsened(fine, (3, 3)).mean_surface, np.zeros((3, 3)))
-
-
 def test_a_winkler_pressure_carries_the_load_where_surfaces_overlap() -> None:
     given = problem((16, 16))
     pressure = winkler_pressure(given)

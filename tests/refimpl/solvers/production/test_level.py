@@ -127,13 +127,6 @@ def test_what_is_inverted_and_what_lags_add_up_to_the_same(
     assert np.array_equal(lagged.traction, traction)
 
 
-def test_without_tau_nothing_is_applied_for_it() -> None:
-    lagged, _, counter = lagging(turned(0.2, oblique=True), pressed(7))
-    lagged.active = FixedSet(pressed(1) > 0)
-    lagged.update()
-    assert counter.tally["shear"] == 1
-
-
 def test_without_pressure_nothing_is_sheared() -> None:
     problem = turned(0.2, 1e6, oblique=True)
     lagged, cg, _ = lagging(problem, np.zeros((M, M)))

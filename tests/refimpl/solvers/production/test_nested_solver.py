@@ -148,20 +148,6 @@ def continued(solver: LevelSolver, finer: Problem) -> LevelSolver:
     return from_guess(finer, solver.initial_guess(), Counter())
 
 
-def test_beside_a_coarse_window_elements_that_are_pressed_away_do_not_touch() -> None:
-    """A ball's gap is below the approach as far as 1.41 contact radii; its displacement parts them there."""
-    coarse, fine = (problem_of(replace(BALL, load=20.0), M) for M in (32, 64))
-    whole = solved(coarse, 1e-6)
-    windowed = solved(coarse, 1e-6, Window.around(whole.contact, 1))
-    beside = np.ones((32, 32), dtype=bool)
-    beside[windowed.window.slices] = False
-    assert np.any(beside & (coarse.gap < 0.9 * windowed.cg.approach))
-    expected, found = continued(whole, fine), continued(windowed, fine)
-    assert found.window == expected.window
-    assert np.array_equal(found.cg.contact, expected.cg.contact)
-    np.testing.assert_allclose(found.cg.pressure, expected.cg.pressure, rtol=1e-4, atol=1.0)
-
-
 @pytest.mark.parametrize("approach", [None, 1e-6])
 def test_a_finer_grid_starts_close_to_its_solution(approach: float | None) -> None:
     coarse, fine = (problem_of(BALL, M, approach=approach) for M in (32, 64))

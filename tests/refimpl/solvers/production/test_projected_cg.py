@@ -321,12 +321,6 @@ def test_of_a_field_only_the_contact_is_kept(count: int) -> None:
     assert np.array_equal(on.scatter_mask(marked), expected > 0.3)
 
 
-@pytest.mark.parametrize(("count", "shape"), [(14, (1, 14)), (15, (5, 8))])
-def test_lists_up_to_a_share_of_the_window(count: int, shape: tuple[int, int]) -> None:
-    on = ContactVectors(contact(count))
-    assert on.gather(FIELD).shape == on.gather_view(FIELD).shape == shape
-
-
 @pytest.mark.parametrize("name", ["table1-rough", "rough-planes"])
 def test_solutions_are_the_same_by_either(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """To rounding: measured 5e-15 of the largest pressure."""
