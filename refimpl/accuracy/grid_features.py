@@ -20,7 +20,7 @@ from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 
-_LEVELS = 16  # of pressure, in `highest_areas`
+_LEVELS = 16  # pressures in `highest_areas`
 
 
 @dataclass(frozen=True)

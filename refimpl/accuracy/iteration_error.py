@@ -21,7 +21,7 @@ CORRECTED = {
     "friction_coefficient_corrected": "friction_coefficient",
     "friction_force_corrected": "friction_force",
 }
-"""Friction without tau on the mean excess of the contact edge, by the number that it is taken off."""
+"""Friction without tau on the mean excess of the contact edge, by the number that it is subtracted from."""
 NUMBERS = (
     "friction_coefficient_corrected",
     "friction_coefficient",

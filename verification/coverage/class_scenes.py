@@ -34,7 +34,7 @@ class _Draw(Dice):
         self.modulus = Pair(lower=self.lower, upper=self.upper).reduced_modulus
         self.direction = self.angle()
         self.ball = not self.periodic  # presses the surface, instead of a flat
-        self.pressed_share, self.radii = (0.05, 0.6), (0.1, 0.3)  # of full contact, and of the shorter side
+        self.pressed_share, self.radii = (0.05, 0.6), (0.1, 0.3)  # loads over full contact's, radii over the side
 
     def lengths(self) -> tuple[float, float]:
         """Correlation lengths of a lay, three to ten to one within the shorter side."""

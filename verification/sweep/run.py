@@ -41,7 +41,7 @@ OUTCOMES = (
     "friction_coefficient_corrected", "friction_coefficient_corrected_error",
     "friction_force_corrected", "friction_force_corrected_error",
 )  # fmt: skip
-"""What a run gives. ``..._corrected`` leaves out the mean excess of the contact edge, and
+"""What a run gives. ``..._corrected`` is without the mean excess of the contact edge, and
 ``friction_coefficient`` is the sum over elements, Eq. (4). ``elastic_friction`` is
 ``sum f sin(theta_x) cos(theta_y) dA`` (N), the part of Eq. (3) that is not local friction; ``residual`` the
 certificate's largest; ``..._cycle`` what an alternating contact edge under tau leaves open;
