@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 import refimpl as rf
 
 PICTURE = sys.argv[1] if len(sys.argv) > 1 else "corrected_friction.png"
-GRIDS = (32, 48, 64, 96, 128, 192, 256, 384)
+GRIDS = (64, 96, 128, 192, 256, 384)
 
 scene = rf.read_scene("rough-planes")
 found = [rf.solve(scene, grid=M) for M in GRIDS]

@@ -15,7 +15,7 @@ PICTURE = sys.argv[3] if len(sys.argv) > 3 else "direction_scan.png"
 scene = rf.read_scene("metal-polymer")
 angles = 2 * np.pi * np.arange(COUNT) / COUNT
 found = [rf.solve(replace(scene, sliding_direction=float(phi)), grid=GRID) for phi in angles]
-mu = np.array([s.friction_coefficient for s in found])
+mu = np.array([s.friction_coefficient_corrected for s in found])
 across = np.array([s.binormal_force / scene.load for s in found])
 print(f"{COUNT} directions, {sum(s.status.name in ('CONVERGED', 'CYCLED') for s in found)} converged")
 print(f"mu from {mu.min():.4f} to {mu.max():.4f}, Q/P from {across.min():+.4f} to {across.max():+.4f}")

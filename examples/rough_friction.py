@@ -11,10 +11,10 @@ PICTURE = sys.argv[2] if len(sys.argv) > 2 else "rough_friction.png"
 
 scene = rf.read_scene("table1-rough")
 found = rf.solve(scene, accuracy=ACCURACY)
-mu, area = found.friction_coefficient, found.contact_area_corrected
+mu, area = found.friction_coefficient_corrected, found.contact_area_corrected
 bars = {name: sum(parts.values()) for name, parts in found.uncertainty.items()}
 print(f"{found.status.value} on {found.grid}")
-print(f"mu = {mu:.4f} +- {bars['friction_coefficient']:.4f}")
+print(f"mu = {mu:.4f} +- {bars['friction_coefficient_corrected']:.4f}")
 print(f"A  = {area * 1e6:.4f} +- {bars['contact_area_corrected'] * 1e6:.4f} mm^2")
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.9), layout="constrained", width_ratios=(1.2, 1))
@@ -25,7 +25,7 @@ pressures = left.imshow(
 figure.colorbar(pressures, ax=left, label="pressure (GPa)")
 left.set(xlabel="x, along the sliding (mm)", ylabel="y (mm)")
 end = 0.0
-for k, (name, part) in enumerate(found.uncertainty["friction_coefficient"].items()):
+for k, (name, part) in enumerate(found.uncertainty["friction_coefficient_corrected"].items()):
     right.barh(0, part / mu * 100, left=end, height=0.4, color=f"C{k}", label=name)
     end += part / mu * 100
 right.axvline(ACCURACY * 100, color="k", ls="--", lw=1, label="requested")

@@ -34,6 +34,15 @@ EXAMPLES = {
         "15 degrees, approach under the load: 8.5 %, first order 9.3, stated 11.8\n"
         "15 degrees, N at the approach: 14.2 %, first order 14.8, stated 19.1",
     ),
+    "corrected_friction": (
+        [],
+        " 64  summed 0.1051, corrected 0.0996 +- 0.0106\n"
+        " 96  summed 0.1043, corrected 0.1010 +- 0.0031\n"
+        "128  summed 0.1036, corrected 0.1012 +- 0.0014\n"
+        "192  summed 0.1024, corrected 0.1010 +- 0.0005\n"
+        "256  summed 0.1021, corrected 0.1011 +- 0.0003\n"
+        "384  summed 0.1016, corrected 0.1009 +- 0.0002",
+    ),
     "direction_scan": (
         ["32", "2"],
         "2 directions, 2 converged\nmu from 0.1408 to 0.1411, Q/P from -0.0011 to +0.0011",

@@ -34,7 +34,8 @@ class _Draw(Dice):
         self.modulus = Pair(lower=self.lower, upper=self.upper).reduced_modulus
         self.direction = self.angle()
         self.ball = not self.periodic  # presses the surface, instead of a flat
-        self.pressed_share, self.radii = (0.05, 0.6), (0.1, 0.3)  # loads over full contact's, radii over the side
+        self.pressed_share = 0.05, 0.6  # range of the load over that of full contact
+        self.radii = 0.1, 0.3  # range of Hertz's contact radius over the shorter side
 
     def lengths(self) -> tuple[float, float]:
         """Correlation lengths of a lay, three to ten to one within the shorter side."""
