@@ -94,9 +94,9 @@ def _cut_off(draw: _Draw) -> rf.Surface:
 
 
 def _few_elements(draw: _Draw) -> rf.Surface:
-    """A smooth ball whose contact is a few elements wide; the roughness only scales its radius."""
+    """A smooth ball whose contact is a few elements wide."""
     draw.periodic, draw.ball, draw.radii = False, True, (0.02, 0.06)
-    return Wave(RMS, (0, 0), 0.5 * math.pi)
+    return rf.Flat()
 
 
 def _slender(draw: _Draw) -> rf.Surface:
