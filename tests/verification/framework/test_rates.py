@@ -149,11 +149,17 @@ def test_bad_series_are_refused(spacing: list[float], values: list[float]) -> No
         extrapolate(spacing, values, expected_order=2.0)
 
 
-def test_an_error_of_zero_has_no_order() -> None:
+def test_no_order_is_found_of_zero_nor_expected() -> None:
     with pytest.raises(ValueError, match="logarithm"):
         fit_order([0.4, 0.2, 0.1], [1.0, 0.5, 0.0])
-
-
-def test_an_expected_order_must_be_positive() -> None:
     with pytest.raises(ValueError, match="expected_order"):
         extrapolate([0.4, 0.2, 0.1], [1.0, 0.5, 0.25], expected_order=0.0)
+
+
+def test_an_order_higher_than_expected_does_not_shorten_the_uncertainty() -> None:
+    """Order 2.4 where 2 is expected: the correction of the best fit of order 2 is larger."""
+    h = [0.4, 0.2, 0.1]
+    found = extrapolate(h, [1 + a**2.4 for a in h], 2.0)
+    assert found.credible
+    assert found.order == pytest.approx(2.4)
+    assert found.uncertainty > 1.5 * 1.25 * 0.1**2.4
