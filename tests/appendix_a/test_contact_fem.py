@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from appendix_a.contact_fem.bodies import MeshPlan, condensed, wavy_surface
+from appendix_a.contact_fem.bodies import MeshPlan, condensed, wave_height, wavy_surface
 from appendix_a.contact_fem.contact import Contact
 from appendix_a.contact_fem.ends import contact_ends
 from appendix_a.contact_fem.interface import Interface, locate
 from appendix_a.contact_fem.scene import Material, WavyPair
 from appendix_a.contact_fem.sequence import Estimate, graded_plans, plans, slide
-from appendix_a.errors import InputError
 from verification.exact.sliding_wave import SlidingWave
 from verification.exact.westergaard import Wave
 
@@ -184,18 +184,7 @@ def test_estimates_bound_ordered_and_scattered_series() -> None:
     assert Estimate.of(1.0, 1.3, 1.2).error == pytest.approx(0.15)
 
 
-@pytest.mark.parametrize(
-    "build",
-    [
-        lambda: WavyPair(0.0, 0.0, STEEL, COPPER),
-        lambda: WavyPair(20.1, 0.0, STEEL, COPPER),
-        lambda: WavyPair(5.0, 0.5, STEEL, COPPER),
-        lambda: WavyPair(5.0, -0.5, STEEL, COPPER),
-        lambda: WavyPair(5.0, 0.0, STEEL, COPPER, tau=-1.0),
-        lambda: Material(-1.0, 0.3),
-        lambda: Material(1.0, 0.5),
-    ],
-)
-def test_input_is_checked(build) -> None:  # type: ignore[no-untyped-def]  # lambdas of several types
-    with pytest.raises(InputError):
-        build()
+def test_a_harmonic_has_its_share_order_and_phase() -> None:
+    """At an eighth of a wave cos 45 deg, and of the second order cos(90 deg + 0.3) = -sin 0.3."""
+    found = wave_height(np.array([0.125]), 2.0, ((2, 0.4, 0.3),))
+    assert found == pytest.approx(2 * (math.sqrt(0.5) - 0.4 * math.sin(0.3)), rel=1e-14)
