@@ -47,15 +47,8 @@ def test_every_dependency_states_a_least_version() -> None:
 
 
 EXTRAS_TESTED_ELSEWHERE = {
-    "instrument",
-    "rigorous",
-    "fast",
-    "mutation",
-    "tamaas",
-    "contactmechanics",
-    "aspher",
-    "dev",
-}
+    "instrument", "rigorous", "fast", "mutation", "tamaas", "contactmechanics", "aspher", "dev",
+}  # fmt: skip
 """The first three are set up by make beside dev; the others are of studies, which tests do not run."""
 
 

@@ -18,8 +18,6 @@ from hypothesis import strategies as st
 
 import refimpl as rf
 from appendix_a.fem.coefficient_map import CoefficientMap
-from refimpl.accuracy.grid_features import GridFeatures
-from refimpl.grid import Grid
 from refimpl.planning.plan import Plan, make_plan
 from refimpl.planning.terms import RequestedTerms
 from refimpl.scene.discretise import discretise
@@ -251,14 +249,6 @@ def test_solutions() -> None:
         one, other = getattr(solution, field.name), getattr(again, field.name)
         same = np.array_equal(one, other) if isinstance(one, np.ndarray) else repr(one) == repr(other)
         assert same, field.name
-
-
-@FEW
-@given(instances(GridFeatures, KNOWN), instances(Grid, KNOWN))
-def test_features_change_no_field_beside_the_one_that_is_replaced(features: GridFeatures, grid: Grid) -> None:
-    changed = plain(replace(features, grid=grid))
-    assert isinstance(changed, dict)
-    assert changed == {**plain(features), "grid": plain(grid)}  # type: ignore[dict-item]  # a table
 
 
 def test_the_map_of_coefficients(tmp_path: Path) -> None:

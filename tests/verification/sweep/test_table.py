@@ -24,7 +24,6 @@ from verification.sweep.export import EXPORTED, header, to_csv, unit_of, write_c
 from verification.sweep.quality import points_of, quality_of, warnings_of
 from verification.sweep.run import COORDINATES, Row, outcome
 from verification.sweep.store import COLUMNS
-from verification.sweep.study_file import study_from_dict
 
 STEEL = rf.Material(200e9, 0.3)
 SEED, PATH = "lower.surface[0].seed", "lower.surface[0].path"
@@ -57,16 +56,6 @@ def test_a_key_depends_on_every_file_of_the_code_and_every_library(
     found.append(digest(monkeypatch, tmp_path, versions))
     found += [digest(monkeypatch, tmp_path, versions | {name: "9"}) for name in versions]
     assert len(set(found)) == len(found) == 1 + 4 + 1 + 3
-
-
-def test_each_coordinate_of_a_run() -> None:
-    axes = {"grid": 6, "load": 3.0, "upper_rms": 2e-7, "lower_rms": 5e-7, "correlation_length": 3e-4}
-    axes |= {"sliding_direction": 0.3, "sliding_offset": -2e-6, "tau": 1e6, "beta": 0.07}
-    table = {"scene": "table1-rough", "vary": axes | {"upper.material.nu": 0.21}}
-    (one,) = study_from_dict(table).runs()
-    assert one.coordinates == {"realisation": 0, **axes, "parameters": '{"upper.material.nu": 0.21}'}
-    upper, lower = (one.inputs["scene"][name]["surface"][-1] for name in ("upper", "lower"))
-    assert (upper["rms"], lower["rms"]) == (2e-7, 5e-7)
 
 
 def test_each_outcome_of_a_row() -> None:
