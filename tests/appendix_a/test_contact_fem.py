@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from appendix_a.contact_fem.bodies import MeshPlan, condensed, wave_height, wavy_surface
+from appendix_a.contact_fem.bodies import MeshPlan, wave_height, wavy_surface
 from appendix_a.contact_fem.contact import Contact
 from appendix_a.contact_fem.ends import contact_ends
-from appendix_a.contact_fem.interface import Interface, locate
+from appendix_a.contact_fem.interface import Interface
 from appendix_a.contact_fem.scene import Material, WavyPair
 from appendix_a.contact_fem.sequence import Estimate, graded_plans, plans, slide
 from verification.exact.sliding_wave import SlidingWave
@@ -141,34 +141,6 @@ def test_depth_of_a_wavelength_and_a_half_is_deep_enough() -> None:
     # 2e-4 is the meshes' difference, 1e-5 on the next finer ones
     assert abs(found[0.75] / found[2.0] - 1) > 1e-3
     assert abs(found[1.5] / found[2.0] - 1) < 5e-4
-
-
-def test_condensation_is_the_schur_complement() -> None:
-    from scipy.sparse import csc_matrix
-
-    rng = np.random.default_rng(5)
-    root = rng.normal(size=(12, 12))
-    matrix = root @ root.T + 12 * np.eye(12)
-    kept = np.array([7, 2, 4])
-    inverse = np.linalg.inv(matrix)[np.ix_(kept, kept)]
-    assert condensed(csc_matrix(matrix), kept) == pytest.approx(np.linalg.inv(inverse), rel=1e-12)
-
-
-def test_compliance_is_symmetric_and_scales_with_the_modulus() -> None:
-    plan = MeshPlan(32, 0.2)
-    one = wavy_surface(0.02, 0.1, Material(1.0, 0.3), plan, upper=True).compliance
-    ten = wavy_surface(0.02, 0.1, Material(10.0, 0.3), plan, upper=True).compliance
-    assert one == pytest.approx(one.T, abs=1e-12)
-    assert one == pytest.approx(10 * ten, rel=1e-12)
-
-
-def test_points_are_found_on_curved_edges() -> None:
-    x = np.array([[0.0, 1.0], [0.45, 1.6], [1.0, 2.0]])
-    for edge, t in ((0, 0.3), (1, 0.8)):
-        shape = np.array([(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)])
-        place = shape @ x[:, edge]
-        found, where = locate(x, np.array([place]))
-        assert (int(found[0]), float(where[0])) == (edge, pytest.approx(t, abs=1e-14))
 
 
 def test_ends_know_the_exponents_of_coupled_sliding() -> None:

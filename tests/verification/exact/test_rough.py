@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from scipy.special import ellipk
 
 from refimpl.errors import InputError
-from verification.exact import archard, greenwood_tripp, jgh, rough_plane
+from verification.exact import archard, greenwood_tripp, jgh
 from verification.exact.greenwood_tripp import RoughSphere, gaussian_summits, overlap_integral, solve
 
 
@@ -121,14 +121,6 @@ def test_waviness_pressure_is_complementary_and_becomes_full() -> None:
     x = (np.arange(16) + 0.5) / 32
     full = jgh.full_contact(x[:, None], x[None, :], 1.2, 1.0, 1.0, 1.0 / (np.sqrt(2) * np.pi))
     np.testing.assert_allclose(jgh.relax(1.2, 16), full, atol=1e-6)
-
-
-def test_rough_plane_slopes() -> None:
-    assert rough_plane.KAPPA_PERSSON < rough_plane.KAPPA_PUBLISHED[0] < rough_plane.KAPPA_BUSH_GIBSON_THOMAS
-    ratio = rough_plane.KAPPA_BUSH_GIBSON_THOMAS / rough_plane.KAPPA_PERSSON
-    assert ratio == pytest.approx(np.pi / 2)
-    assert float(rough_plane.kappa(0.02, 1e6, 1e11, 1e-3)) == pytest.approx(2.0)
-    assert float(rough_plane.persson_area(5.0)) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("levels", [1, 2, 3])

@@ -12,10 +12,9 @@ import pytest
 
 import refimpl as rf
 from refimpl.errors import InputError
-from refimpl.scene.scene_file import scene_from_dict
 from refimpl.surfaces import measured
 from verification.sweep import study as study_module
-from verification.sweep.run import COORDINATES, OUTCOMES, execute
+from verification.sweep.run import COORDINATES, execute
 from verification.sweep.study import Study
 from verification.sweep.study_file import read_study, shipped_studies, study_from_dict
 
@@ -51,22 +50,6 @@ def test_no_roughness_leaves_the_shape() -> None:
     assert [part["kind"] for part in run.inputs["scene"]["upper"]["surface"]] == ["sphere"]
     assert run.inputs["scene"]["lower"]["surface"] == [{"kind": "flat"}]
     assert run.coordinates["correlation_length"] is None
-
-
-def test_a_run_is_what_solve_gives_for_its_scene() -> None:
-    (run,) = study_from_dict(
-        BASE | {"realisations": 1, "normalise": True, "vary": {"grid": [32], "sliding_direction": [0.7]}}
-    ).runs()
-    row, seconds = execute(run.inputs)
-    direct = rf.solve(scene_from_dict(run.inputs["scene"], Path()), grid=32)
-    assert seconds > 0
-    assert set(row) == set(OUTCOMES)
-    for name in ("friction_coefficient", "contact_area", "max_pressure", "binormal_force", "approach"):
-        assert row[name] == getattr(direct, name)
-    local = direct.traction * direct.slopes.cos_x * direct.slopes.cos_y
-    assert row["elastic_friction"] == pytest.approx(
-        direct.friction_force - float(np.sum(local)) * direct.grid.element_area, rel=1e-9
-    )
 
 
 @pytest.mark.parametrize(
@@ -368,14 +351,6 @@ def test_bad_numbers_of_surfaces_are_refused(
     with pytest.raises(InputError) as refused:
         study_from_dict({"scene": "scene.toml", "vary": {"grid": [32], axis: values}}, tmp_path)
     assert refused.value.field == field
-
-
-def test_a_material_varies_and_one_value_needs_no_list() -> None:
-    varied_E = {"grid": 16, "lower.material.E": [1e9, 2e9], "lower.material.nu": 0.4}
-    runs = list(study_from_dict(BASE | {"realisations": 1, "vary": varied_E}).runs())
-    assert [run.inputs["scene"]["lower"]["material"]["E"] for run in runs] == [1e9, 2e9]
-    assert [run.inputs["scene"]["lower"]["material"]["nu"] for run in runs] == [0.4, 0.4]
-    assert [run.coordinates["grid"] for run in runs] == [16, 16]
 
 
 def test_a_requested_accuracy_chooses_the_grid_and_is_met() -> None:
