@@ -14,7 +14,13 @@ from tests.documents import ROOT, agree, blocks, commands, run
 DOCS = sorted((ROOT / "docs").glob("*.md"))
 
 
-@pytest.mark.parametrize("path", DOCS, ids=lambda path: path.stem)
+LONG = {"notebooks"}  # a whole notebook
+
+
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(p, id=p.stem, marks=[pytest.mark.nightly] if p.stem in LONG else []) for p in DOCS],
+)
 def test_a_page_is_true(path: Path, tmp_path: Path) -> None:
     for name in ("tests", "examples", "docs"):  # as seen from a checkout
         (tmp_path / name).symlink_to(ROOT / name)

@@ -14,15 +14,18 @@ from tests.documents import ROOT, blocks, commands, run
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.parametrize("report", [False, pytest.param(True, marks=pytest.mark.nightly)])
 def test_every_block_runs_and_prints_what_the_readme_says(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    report: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Make is what CI runs; a whole report, which takes a minute, is drawn by a test of its own."""
     (tmp_path / "docs").mkdir()
     monkeypatch.setenv("MPLBACKEND", "agg")
-    page = re.sub(r"^\$ make .*\n", "", README, flags=re.M)  # make: see below, and what CI runs
-    assert run(page, tmp_path) == 1
+    left = r"^\$ make .*\n" if report else r"^\$ (make|\.venv/bin/rough-friction report) .*\n"
+    assert run(re.sub(left, "", README, flags=re.M), tmp_path) == 1
     made = {path.name for path in tmp_path.rglob("*") if path.is_file()}
-    assert made == {"table1-rough.png", "hertz.json", "hertz.vtu", "results.json", "report.html"}
+    assert made - {"report.html"} == {"table1-rough.png", "hertz.json", "hertz.vtu", "results.json"}
+    assert ("report.html" in made) is report
 
 
 def test_its_example_is_short_and_its_commands_are_those_of_the_set_up() -> None:

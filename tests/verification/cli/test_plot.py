@@ -16,7 +16,7 @@ import refimpl as rf
 from refimpl.grid import Array
 from tests.verification.cli.commands import run
 from verification.cli import plot
-from verification.cli.plot_maps import domain_map, gap_map, outline, pressure_map, shear_map
+from verification.cli.plot_maps import domain_map, gap_map, pressure_map, shear_map
 from verification.cli.plot_profiles import gap_histogram, pressure_histogram, profile
 from verification.cli.plot_style import PRESSURES, unit_at_scale
 from verification.cli.plot_view import View, peak_of, pooled, view_of
@@ -142,18 +142,6 @@ def test_histograms_are_shares() -> None:
     assert "2.78 % of the window" in gaps.get_title()  # 2 of 8 x 9 elements
     bars = np.asarray(gaps.patches[0].get_path().vertices)[:, 1]
     assert bars.max() == pytest.approx(100 * 70 / 72)  # all others are 1 um apart
-
-
-def test_the_edge_of_a_set_is_drawn_once() -> None:
-    solution = marked([(20, 10), (25, 14)])
-    view = view_of(solution)
-    axes = Figure().subplots()
-    where = view.cut(solution.pressure) > 2e6
-    outline(axes, where, view, "red")
-    segments = np.array(axes.collections[0].get_segments())  # type: ignore[attr-defined]
-    assert len(segments) == 4
-    assert segments[..., 0].min() == pytest.approx(20 * 25)
-    assert segments[..., 1].max() == pytest.approx(11 * 25)
 
 
 def texts(solution: rf.Solution) -> list[str]:
