@@ -86,3 +86,23 @@ def test_the_table_of_bars_is_that_of_the_results() -> None:
     assert f"are {longer.split()[-1]} times the error in the median" in text
     scenes = sum(last - first + 1 for first, last in (study["seeds"] for study in studies))
     assert f"on {scenes} random scenes" in text
+
+
+NUMBERS = ("contact_area", "contact_area_corrected", "friction_coefficient", "max_pressure", "approach")
+HEAD = "| class of scene | A | A, corrected | mu | p_max | approach |"
+
+
+def test_every_class_and_number_is_that_of_the_study() -> None:
+    lines = (ROOT / "docs/error-bars.md").read_text(encoding="utf-8").splitlines()
+    start = lines.index(HEAD) + 2
+    stated = {}
+    for line in lines[start : lines.index("", start)]:
+        name, *cells = (cell.strip() for cell in line.strip("|").split("|"))
+        stated[name] = cells
+    table = read_result(ROOT / "reports" / "results" / "coverage_classes.json")["table"]
+    found: dict[str, list[str]] = {}
+    for row in table:
+        if row["class"] and row["number"] in NUMBERS:
+            cell = f"{100 * row['held']:.0f} % / {100 * row['usable']:.0f} %"
+            found.setdefault(row["class"], []).append(cell)
+    assert stated == found
