@@ -56,16 +56,6 @@ def test_richardson_gives_limit_order_and_uncertainty_back(
     assert found.safety_factor == 1.25
 
 
-def test_three_grids_reproduce_the_textbook_index() -> None:
-    # Roache 1994: GCI = 1.25 |f2 - f1| / (r**p - 1), with p from the three values.
-    f3, f2, f1 = 0.9613, 0.9682, 0.9705
-    p = np.log((f2 - f3) / (f1 - f2)) / np.log(2)
-    found = extrapolate([4.0, 2.0, 1.0], [f3, f2, f1], expected_order=2.0)
-    assert found.order == pytest.approx(p, abs=1e-6)
-    assert found.uncertainty == pytest.approx(1.25 * (f1 - f2) / (2**p - 1), rel=1e-5)
-    assert found.extrapolated == pytest.approx(f1 + (f1 - f2) / (2**p - 1), rel=1e-7)
-
-
 @pytest.mark.parametrize(
     ("values", "why"),
     [
@@ -154,12 +144,3 @@ def test_no_order_is_found_of_zero_nor_expected() -> None:
         fit_order([0.4, 0.2, 0.1], [1.0, 0.5, 0.0])
     with pytest.raises(ValueError, match="expected_order"):
         extrapolate([0.4, 0.2, 0.1], [1.0, 0.5, 0.25], expected_order=0.0)
-
-
-def test_an_order_higher_than_expected_does_not_shorten_the_uncertainty() -> None:
-    """Order 2.4 where 2 is expected: the correction of the best fit of order 2 is larger."""
-    h = [0.4, 0.2, 0.1]
-    found = extrapolate(h, [1 + a**2.4 for a in h], 2.0)
-    assert found.credible
-    assert found.order == pytest.approx(2.4)
-    assert found.uncertainty > 1.5 * 1.25 * 0.1**2.4
