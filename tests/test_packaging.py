@@ -64,7 +64,6 @@ OPTIONAL = (
 )  # fmt: skip
 
 
-@pytest.mark.slow
 def test_without_any_extra_it_solves_plots_and_writes_csv(tmp_path: Path) -> None:
     blocked = "".join(f"sys.modules[{name!r}] = None\n" for name in OPTIONAL)
     (tmp_path / "sitecustomize.py").write_text(

@@ -223,6 +223,7 @@ def test_result_files(name: str, folder: Path) -> None:
         ("--against", "null", "old.json"),
         ("--committed", CORRUPTED["wrong counts"], "kept/coverage.json"),
         ("--committed", "[]", "kept/coverage.json"),
+        ("--committed", "{", "kept/coverage.json"),
         ("--committed", json.dumps({"tail": []}), "kept"),
     ],
 )
