@@ -79,6 +79,14 @@ def test_finite_elements_find_the_first_order_on_a_gentle_wave(nu: float) -> Non
     np.testing.assert_allclose(found, wavy - flat, rtol=0.03)
 
 
+def test_superposition_reaches_far_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    x = np.array([0.5, 3.0, 20.0])
+    once, _ = printed(15.0, 10.0, 0.3, offsets=x)
+    monkeypatch.setattr(superposition, "REACH", 2 * superposition.REACH)
+    twice, _ = printed(15.0, 10.0, 0.3, offsets=x)
+    np.testing.assert_allclose(once, twice, rtol=0, atol=2e-9)
+
+
 def test_flamant_superposition_of_a_uniform_strip() -> None:
     nu, x = 0.3, 2.5
     s, weights = superposition.graded_nodes([-1.0, 1.0, x, 0.0], 20.0)
