@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import astuple
+
 import mpmath as mp
 import numpy as np
 import pytest
 
-from appendix_a.wedge import displacements, enclosure, fast, printed, stresses
+from appendix_a.wedge import displacements, enclosure, fast, printed, reference, stresses
+from appendix_a.wedge.transform import remainders
 
 GAMMAS = (0.0, 1e-6, 0.3, 1.0, 1.5)
 
@@ -127,3 +130,46 @@ def test_the_tails_bound_is_checked(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(ArithmeticError, match="from xi = 1"):
         enclosure._tail_start(arb, arb(0.895), arb(0.0))  # 1.464 and 1.456
     assert enclosure._tail_start(arb, arb(1.0), arb(0.0)) == 1  # 1.36 and 1.81
+
+
+@pytest.mark.parametrize("gamma", [1e-6, 0.2, 0.9, 1.5])
+def test_remainders_complete_the_kernels(gamma: float) -> None:
+    """R_S, R_T plus the half-planes' kernels are S, T, in 60 digits."""
+    for xi in (0.0, 0.3, 2.0, 9.0):
+        r_s, r_t = remainders(np.array([-0.5 + 1j * xi]), gamma)
+        with mp.workdps(60):
+            alpha, z = mp.pi / 2 - mp.mpf(gamma), mp.mpc(-0.5, xi)
+            d = mp.sin(2 * alpha * z) + z * mp.sin(2 * alpha)
+            s = mp.sin((1 - z) * alpha) / d - mp.sin(alpha * (1 + z) - mp.pi * z) / mp.sin(mp.pi * z)
+            t = mp.sin((1 + z) * alpha) / d - mp.sin(alpha * (1 - z) + mp.pi * z) / mp.sin(mp.pi * z)
+            # both terms of a numerator are of order gamma, and may cancel to gamma^2
+            assert abs(complex(s) - r_s[0]) <= 1e-13 * abs(complex(s)) + 1e-15 * gamma
+            assert abs(complex(t) - r_t[0]) <= 1e-13 * abs(complex(t)) + 1e-15 * gamma
+
+
+def test_reference_stops_after_eight_negligible_terms_in_a_row(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A small term amid large ones is no end: the count begins anew at each large one."""
+    asked = []
+
+    def kernels(*_: object) -> list[mp.mpc]:
+        asked.append(len(asked) + 1)
+        return [mp.mpc(0, 0 if asked[-1] in (2, 3) or asked[-1] > 6 else 1)] * 3
+
+    monkeypatch.setattr(reference, "kernels", kernels)
+    reference._sum((mp.mpf(1), mp.mpf(0), mp.mpf("0.3")), mp.mpf(0), mp.mpf("0.1"), mp.mpf("1e-20"))
+    assert len(asked) == 6 + reference.QUIET_TERMS
+
+
+@pytest.mark.parametrize("r", [1e-3, 0.5, 1.0, 30.0])
+@pytest.mark.parametrize("gamma", [0.05, 0.7])
+def test_printed_panels_follow_the_shortest_scale(
+    r: float, gamma: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Seen with a rule of two points: halved panels err a sixteenth, so their change bounds what is left."""
+    exact = printed.stresses(r, 0.1, gamma)
+    monkeypatch.setattr(printed, "GAUSS", np.polynomial.legendre.leggauss(2))
+    found = printed.stresses(r, 0.1, gamma)
+    left = np.subtract(astuple(found)[:3], astuple(exact)[:3])
+    assert np.abs(left).max() <= 0.05 * found.error  # 0.035 at most; a third fewer panels: 0.29
+    if r == 0.5:  # where both are as they are from afar
+        assert np.abs(left).max() >= 0.002 * found.error  # 0.004 at least; a first rule half as fine: 0.0005
