@@ -47,7 +47,12 @@ def test_no_example_is_left_out() -> None:
     assert [name for name, size in sizes.items() if not 5_000 < size <= 120_000] == []
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+IN_CI = ("hertz", "rough_friction", "conventions")
+
+
+@pytest.mark.parametrize(
+    "name", [n if n in IN_CI else pytest.param(n, marks=pytest.mark.nightly) for n in EXAMPLES]
+)
 def test_an_example(name: str, tmp_path: Path) -> None:
     (arguments, stated), picture = EXAMPLES[name], tmp_path / "picture.png"
     script = ROOT / "examples" / f"{name}.py"

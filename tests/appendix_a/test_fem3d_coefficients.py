@@ -75,12 +75,14 @@ def flank() -> Coefficients3D:
     return coefficients(10.0, 20.0, 0.25, NU)
 
 
+@pytest.mark.nightly
 def test_stated_errors_are_within_what_is_asked(flank: Coefficients3D) -> None:
     assert flank.uncertainty.max() < 0.002
     assert flank.residual < 1.1e-8
     assert np.all(flank.uncertainty > 0)
 
 
+@pytest.mark.nightly
 def test_the_box_is_taken_away(flank: Coefficients3D) -> None:
     """A box of 3 wavelengths on mesh level 2, each within 0.015 % of flat; that of 1.5 is 0.05 % off."""
     flat = flat_sample(20.0, Kind.RIDGE, NU, 60.0, 2).down
@@ -102,6 +104,7 @@ def test_outer_boundary_carries_both_forces() -> None:
     assert np.all(held[:, ~outer] == 0)
 
 
+@pytest.mark.nightly
 def test_correction_removes_the_antisymmetric_part(flank: Coefficients3D) -> None:
     surface = Waviness(10.0, 20.0, 0.25)
     left = corrected(flank, surface, NU)

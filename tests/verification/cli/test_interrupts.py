@@ -166,7 +166,7 @@ def test_an_unwritable_place_is_refused_before_any_work(name: str, tmp_path: Pat
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("name", ["s.json", "-"])
+@pytest.mark.parametrize("name", ["s.json", pytest.param("-", marks=pytest.mark.nightly)])
 def test_a_closed_pipe_ends_quietly_and_costs_no_file(name: str, tmp_path: Path) -> None:
     arguments = [sys.executable, "-c", START, "solve", "hertz", "--grid", "8", "--json", name]
     reader, writer = os.pipe()
@@ -178,7 +178,7 @@ def test_a_closed_pipe_ends_quietly_and_costs_no_file(name: str, tmp_path: Path)
         assert json.loads((tmp_path / name).read_text())["status"] == "converged"
 
 
-@pytest.mark.parametrize("out", ["-", "r.json"])
+@pytest.mark.parametrize("out", ["-", pytest.param("r.json", marks=pytest.mark.nightly)])
 def test_a_store_whose_name_standard_output_cannot_encode(out: str, tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text('scene = "hertz"\n[vary]\ngrid = [4]\n')
     name = os.fsdecode(b"s\xff\x1b\xc3\xa9.sqlite")
