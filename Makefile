@@ -7,7 +7,7 @@ OUT := out
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: report test lint setup clean nightly mutation
+.PHONY: report results test lint setup clean nightly mutation
 
 report: $(READY)
 	@mkdir -p $(OUT)
@@ -15,6 +15,13 @@ report: $(READY)
 	$(BIN)/rough-friction verify --tier quick --json $(OUT)/results.json || status=$$?; \
 	$(BIN)/rough-friction report --results $(OUT)/results.json --output $(OUT)/report; \
 	exit $$status
+
+# The committed results: all cases in one run, cut into their files, and the commands of the files that are not cases.
+results: $(READY)
+	@mkdir -p $(OUT)
+	@rm -f $(OUT)/full.json; status=0; \
+	$(BIN)/rough-friction verify --tier full --jobs 1 --json $(OUT)/full.json || status=$$?; \
+	$(BIN)/python -m verification.cli.results $(OUT)/full.json && exit $$status
 
 test: lint
 	$(BIN)/python -m pytest -n 2 --dist worksteal

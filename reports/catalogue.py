@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from reports.appendix_figures import APPENDIX
 from reports.contestant_figures import CONTESTANTS
-from reports.drawing import Figure, dots, lines, maps, order
+from reports.drawing import Data, Figure, dots, lines, maps, order
 from reports.reproduction_figures import REPRODUCTION
 from reports.yield_figures import BEYOND_YIELD
 
@@ -14,6 +14,16 @@ def _order(cases: str, what: str, expected: float) -> Figure:
     return Figure(
         cases, ("M", "error"), draw, f"{{title}}: error of the {what} over the grid, and the order expected."
     )
+
+
+TIMED = ("paper", "production", "NNLS", "L-BFGS-B")
+
+
+def _table2_seconds(data: Data) -> Data:
+    """Seconds of each method over the grids of the paper's scheme; none where a method ends earlier."""
+    seconds = {name: dict(zip(data[f"{name}: M"], data[f"{name}: s"], strict=True)) for name in TIMED}
+    grids = data["paper: M"]
+    return {"M": grids, **{name: [by_grid.get(M) for M in grids] for name, by_grid in seconds.items()}}
 
 
 FIG12 = {
@@ -99,6 +109,20 @@ DECLARED = (
                 "Approach and load prescribed, by scene.",
             ),
         )
+    ),
+    Figure(
+        "variational/table2-growth",
+        tuple(f"{name}: {what}" for name in TIMED for what in ("M", "s")),
+        lines(
+            "M",
+            {name: name for name in TIMED},
+            xlabel="elements per side",
+            ylabel="processor time (s)",
+            log="xy",
+            marker=True,
+        ),
+        "Processor time on the same scene; the methods took turns on every grid.",
+        derived=_table2_seconds,
     ),
     Figure(
         "hertz/peak-pressure",

@@ -42,7 +42,6 @@ CHAPTERS = (
         "Orders of convergence are fitted over at least four grids.",
         ("kernels", "surfaces", "manufactured", "hertz", "reference", "balance", "sliding", "golden",
          "bounds", "cross-check", "paper", "variational", "rectangles", "sweep"),
-        ("table2",),
     ),
     Chapter(
         "appendix",
@@ -59,7 +58,7 @@ CHAPTERS = (
         "finer grids, sensitivities, and budgets after V&V 20. Identification of tau and beta from measured "
         "friction: coverage of its intervals, and effects of wrong input.",
         ("accuracy", "sensitivity", "identification"),
-        ("coverage", "coverage_fresh", "coverage_classes", "multilevel"),
+        ("coverage", "coverage_fresh", "coverage_classes"),
     ),
     Chapter(
         "yield",
@@ -92,8 +91,8 @@ CHAPTERS = (
         "costs",
         "Appendix III: costs",
         "Seconds beside published codes at one recomputed error, and the cost of an accuracy.",
-        ("tradeoff", "multilevel", "benchmarks"),
-        ("benchmarks", "tradeoff", "accuracy_costs", "large_grids", "sweeps"),
+        ("benchmarks",),
+        ("benchmarks", "accuracy_costs", "large_grids", "sweeps"),
     ),
 )  # fmt: skip
 

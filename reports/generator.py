@@ -21,7 +21,7 @@ from reports.front_page import NAMED, front_page
 from reports.parts import shown
 from reports.pictures import Album
 from reports.results import Case, CaseDataError, ResultFileError
-from reports.revisions import one_revision, revisions_of
+from reports.revisions import revisions_of
 from reports.summary import groups
 from reports.text import cell, interval, judgement, number, symbols
 
@@ -71,7 +71,6 @@ def render(
         "evidence": evidence,
         "provenance": evidence.run["provenance"],
         "revisions": revisions_of(evidence),
-        "one_revision": one_revision(revisions_of(evidence)),
         "solver": evidence.solver,
         "changes": None if against is None else compared(against, results),
         "judgement": judgement,

@@ -22,9 +22,8 @@ PAGE = Path(__file__).with_name("RESULTS.md")
 INTRODUCTION = """# Results
 
 The numbers of the committed result files. `python -m reports.results_page` writes this page; a test compares
-the two. [results/README.md](results/README.md) names the command behind each file. `rough-friction verify
---stale` lists the files that are older than the code. `make report` makes the full report, with every case
-and figure.
+the two. [results/README.md](results/README.md) names the command behind each file. `make results`
+makes those of all cases again. `make report` makes the full report, with every case and figure.
 
 Symbols: μ friction coefficient, A real contact area, p_max maximum contact pressure, σ_e equivalent rms
 roughness of both bodies. Claims quote the paper, where p_max is f_max. ± is a 95 % interval."""
@@ -39,7 +38,7 @@ def page(documents: Mapping[str, Any]) -> str:
         claims(evidence),
         coverage(documents),
         costs(documents["benchmarks"]),
-        accuracy_costs(documents["tradeoff"]),
+        accuracy_costs(documents["accuracy_costs"]),
         checks(documents, evidence),
         studies(documents),
         codes(documents["cross_code"]),

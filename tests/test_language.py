@@ -29,18 +29,15 @@ EXCEPTIONS: dict[tuple[str, str], str] = {
     ("reports/reproduction_figures.py", "summits"): SUMMITS,
     ("reports/studies/benchmarks.py", "seconds again"): KEY,
     ("reports/studies/extremes.py", "honest failure"): VERDICT,
-    ("reports/studies/tradeoff.py", "left out"): KEY,
     ("verification/benchmarks/summary.py", "seconds again"): KEY,
     ("verification/cases/contact/rough_planes.py", "summit"): SUMMITS,
     ("verification/cases/contact/rough_planes.py", "summits"): SUMMITS,
-    ("verification/cli/tradeoff.py", "left out"): KEY,
     ("verification/solver_suite/check.py", "left out"): FAULT,
     ("verification/exact/greenwood_tripp.py", "summit"): SUMMITS,
     ("verification/exact/greenwood_tripp.py", "summits"): SUMMITS,
     ("verification/stress_tests/state.py", "honest failure"): VERDICT,
     ("verification/reproduction/fig6.py", "summit"): SUMMITS,
     ("verification/reproduction/fig6.py", "summits"): SUMMITS,
-    ("verification/tradeoff/study.py", "left out"): KEY,
 }
 """Reasons, by file and matched text."""
 

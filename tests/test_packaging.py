@@ -60,7 +60,7 @@ def test_what_ci_installs_has_the_extras_that_tests_use() -> None:
 
 OPTIONAL = (
     "xarray", "h5netcdf", "h5py", "pandas", "pyarrow", "dask", "distributed", "ducc0", "flint",
-    "SurfaceTopography", "piqp", "cosmic_ray", "tamaas", "ContactMechanics", "aspher",
+    "SurfaceTopography", "cosmic_ray", "tamaas", "ContactMechanics", "aspher",
 )  # fmt: skip
 
 

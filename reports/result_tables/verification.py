@@ -34,7 +34,7 @@ def checks(documents: Mapping[str, Any], evidence: Evidence) -> str:
 
 def studies(documents: Mapping[str, Any]) -> str:
     """Quality of the verification itself: single numbers of the studies."""
-    rows = [*_searches(documents), *_repetitions(documents)]
+    rows = list(_searches(documents))
     text = "How far the verification itself can be trusted, and what broad searches found."
     return section("Studies", text, ("study", "result", "file"), rows)
 
@@ -54,18 +54,6 @@ def _searches(documents: Mapping[str, Any]) -> Iterator[Row]:
         "random examples of invariants",
         f"{invariants['examples']} tried, {invariants['counterexamples']} counter-examples",
         link("hypothesis"),
-    )
-
-
-def _repetitions(documents: Mapping[str, Any]) -> Iterator[Row]:
-    """Rows of what was repeated: ensembles with other seeds."""
-    ensembles = documents["multilevel"]
-    covered = {name: found["covered"] for name, found in ensembles["quantities"].items()}
-    yield (
-        "intervals of ensemble means",
-        f"cover μ in {covered['friction_coefficient']} and A in {covered['contact_area']} of "
-        f"{ensembles['repetitions']} repetitions",
-        link("multilevel"),
     )
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import fcntl
 from pathlib import Path
 
 import pytest
+from filelock import FileLock
 
 from reports.generator import render
 from reports.result_files import read_results
@@ -18,8 +18,7 @@ def page_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     own = tmp_path_factory.getbasetemp()
     shared = own.parent if own.name.startswith("popen-") else own
     path = shared / "report.html"
-    with (shared / "report.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+    with FileLock(shared / "report.lock"):
         if not path.exists():
             documents = read_results(ROOT / "reports/results")
             path.write_text(render(documents["quick"], documents), encoding="utf-8")

@@ -9,14 +9,14 @@ import pytest
 from reports.drawing import COLOURS
 from tests.colour_vision import VISION, contrast, least_difference
 from tests.documents import ROOT
-from verification.cli import plot_style, plot_sweep
+from verification.cli import plot_curves, plot_style
 
 APART = 15.0
 """Colour difference: that of the closest pair of Okabe and Ito 2008, who chose for such readers, is 16."""
 PALETTES = {
     "report": COLOURS,
     "pictures": (plot_style.BLUE, plot_style.ORANGE, plot_style.GREEN, plot_style.PINK, plot_style.BLACK),
-    "sweeps": plot_sweep.COLOURS,
+    "sweeps": plot_curves.COLOURS,
 }
 
 

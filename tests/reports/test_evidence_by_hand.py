@@ -11,7 +11,7 @@ from reports.drawing import Figure, lines
 from reports.evidence import gathered
 from reports.exhibit import as_csv
 from reports.results import ResultFileError, check, worst
-from reports.revisions import one_revision, revisions_of
+from reports.revisions import revisions_of
 from reports.summary import groups
 from tests.reports.sample import case, results
 
@@ -98,24 +98,16 @@ def test_a_csv_has_the_rows_of_its_longest_column() -> None:
     assert found.splitlines() == ["h,error", "1,0.5", "2,", "3,", "more", "a,7", "b,8,9"]
 
 
-def test_a_file_has_the_solver_of_the_run_or_another_one() -> None:
-    """A fit's code is no part of the solver; a file without digests has an unknown one."""
-    digests = {"refimpl": "a", "refimpl/model": "b", "refimpl/identification": "c", "verification": "d"}
-    run, same, other = (dated(f"2001-01-0{day}", case(f"{day}/1")) for day in (1, 2, 3))
-    run["provenance"]["sources"] = digests
-    same["provenance"]["sources"] = digests | {"refimpl/identification": "x", "verification": "y"}
-    other["provenance"]["sources"] = digests | {"refimpl/model": "x"}
+def test_a_file_has_the_date_and_the_commit_of_its_newest_run() -> None:
+    run, old, other = (dated(f"2001-01-0{day}", case(f"{day}/1")) for day in (1, 2, 3))
     other["provenance"]["dirty"] = True
-    study = {"runs": [{"provenance": {"date": "2001-02-03", "commit": None}}]}
-    rows = revisions_of(gathered(run, {"same": same, "other": other, "study": study}))
-    assert [(name, date) for name, date, _, _ in rows] == [
+    made = [{"provenance": {"date": f"2001-02-0{day}", "commit": None}} for day in (2, 3, 1)]
+    rows = revisions_of(gathered(run, {"old": old, "other": other, "study": {"runs": made, "x": [1]}}))
+    assert [(name, date) for name, date, _ in rows] == [
         ("this run", "2001-01-01"),
+        ("old.json", "2001-01-02"),
         ("other.json", "2001-01-03"),
-        ("same.json", "2001-01-02"),
         ("study.json", "2001-02-03"),
     ]
-    now, changed, equal, unknown = (solver for *_, solver in rows)
-    assert len({now, changed, unknown}) == 3
-    assert (equal, unknown) == (now, "n/a")
-    assert rows[1][2].endswith(" and uncommitted changes")
-    assert "1 of 3 files have that of this run" in one_revision(rows)
+    assert rows[2][2].endswith(" and uncommitted changes")
+    assert rows[3][2] == "n/a"

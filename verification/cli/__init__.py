@@ -18,7 +18,6 @@ from verification.cli import (
     identify,
     inspect,
     keys,
-    remake,
     report,
     solve,
     sweep,
@@ -62,7 +61,7 @@ def parser() -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action="version", version=f"rough-friction {version('rough-friction')}")
     commands = top.add_subparsers(title="subcommands", metavar="COMMAND", required=True)
-    for module in (solve, inspect, identify, keys, verify, report, remake, sweep, tradeoff, appendix_a):
+    for module in (solve, inspect, identify, keys, verify, report, sweep, tradeoff, appendix_a):
         module.add_parser(commands)
     return top
 

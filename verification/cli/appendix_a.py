@@ -6,12 +6,14 @@ import argparse
 import json
 import math
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from verification.cli.output import Parsers, add_json, columns, emit
+from verification.cli import appendix_tables, half_space
+from verification.cli.options import Options, Parsers, declare, number, numbers, option, subcommand
+from verification.cli.output import columns, emit
 
 # A table is of a slope's square, so none of zero; half a period of positions is all, the rest is its mirror.
 MAP_RANGES = {
@@ -35,11 +37,36 @@ EXAMPLES = {
     "element": "--slope-deg 6.5 --nu 0.3 --E 118e9 --upper-nu 0.3 --upper-E 200e9",
 }
 
+WAVE_OPTIONS: Options = {
+    "--slope-deg": option("maximum slope of the profile (degrees)", type=number, required=True),
+    "--wavelength": option("in half-widths of the strip", type=number, required=True),
+    "--position": option("centre of the strip: crest 0, flank 0.25, valley 0.5", type=number, required=True),
+    "--nu": option("Poisson's ratio", type=number, required=True),
+    "--offsets": option("distances from the centre, in half-widths", type=numbers, required=True),
+}
+WEDGE_OPTIONS: Options = {
+    "--gamma-deg": option("slope angle of the faces (degrees)", type=number, required=True),
+    "--r": option("distances from the tip", type=numbers, required=True),
+    "--theta-deg": option("angles from the bisector (degrees)", type=numbers, required=True),
+    "--half-width": option("pressed length of each face (default 1)", type=number, default=1.0),
+}
+MAP_OPTIONS: Options = {
+    "--slopes-deg": option("maximum slopes (degrees)", type=numbers),
+    "--wavelengths": option("in half-widths of the strip", type=numbers),
+    "--positions": option("of the strip's centre: crest 0 to valley 0.5", type=numbers),
+    "--jobs": option("worker processes (default 2)", metavar="N", type=int, default=2),
+}
+
+GROUPS = {
+    "look-up": appendix_tables.PAIR,
+    "element": appendix_tables.PAIR,
+    "surface": half_space.SURFACE_FILE,
+}
+"""Title, text and options of a further group of a problem's options."""
+
 
 def add_parser(commands: Parsers) -> None:
     """Declare the subcommand and its own subcommands."""
-    from verification.cli import appendix_tables
-
     parser = commands.add_parser(
         "appendix-a",
         help="the plane problems of Appendix A",
@@ -48,106 +75,24 @@ def add_parser(commands: Parsers) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     problems = parser.add_subparsers(title="problems", metavar="PROBLEM", required=True)
-    _add_strip(problems)
-    _add_wedge(problems)
-    _add_fem(problems)
-    _add_map(problems)
-    appendix_tables.add_look_up(
-        _problem(problems, "look-up", appendix_tables.look_up, appendix_tables.LOOK_UP)
-    )
-    appendix_tables.add_element(
-        _problem(problems, "element", appendix_tables.element, appendix_tables.ELEMENT)
-    )
-    _add_surface(problems)
-
-
-def numbers(text: str) -> list[float]:
-    """Argument type: finite numbers with commas between them.
-
-    >>> numbers("-10,3.5")
-    [-10.0, 3.5]
-    """
-    try:
-        return [number(part) for part in text.split(",")]
-    except argparse.ArgumentTypeError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a list of numbers like -3,0,3") from None
-
-
-def number(text: str) -> float:
-    """Argument type: a finite number."""
-    try:
-        found = float(text)
-    except ValueError:
-        found = math.nan
-    if not math.isfinite(found):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a finite number")
-    return found
-
-
-def _add_strip(problems: Parsers) -> None:
-    parser = _problem(problems, "strip", strip, "pressed strip on a sinusoidal boundary, to first order")
-    _wavy_options(parser)
-
-
-def _add_fem(problems: Parsers) -> None:
-    parser = _problem(problems, "fem", fem, "pressed strip on a sinusoidal boundary, by finite elements")
-    _wavy_options(parser)
-
-
-def _add_map(problems: Parsers) -> None:
-    text = "error of flat influence coefficients on sinusoidal waves, as a table; minutes"
-    parser = _problem(problems, "map", coefficient_map, text)
-    add = parser.add_argument
-    add("--slopes-deg", type=numbers, help="maximum slopes (degrees)")
-    add("--wavelengths", type=numbers, help="in half-widths of the strip")
-    add("--positions", type=numbers, help="of the strip's centre: crest 0 to valley 0.5")
-    add("--jobs", metavar="N", type=int, default=2, help="worker processes (default 2)")
-
-
-def _add_surface(problems: Parsers) -> None:
-    from verification.cli import half_space
-
-    text = "how far a half-space may be trusted on one's own surface; three solves"
-    half_space.add_options(_problem(problems, "surface", half_space.surface, text))
-
-
-def _wavy_options(parser: argparse.ArgumentParser) -> None:
-    add = parser.add_argument
-    add("--slope-deg", type=number, required=True, help="maximum slope of the profile (degrees)")
-    add("--wavelength", type=number, required=True, help="in half-widths of the strip")
-    add(
-        "--position",
-        type=number,
-        required=True,
-        help="centre of the strip: crest 0, flank 0.25, valley 0.5",
-    )
-    add("--nu", type=number, required=True, help="Poisson's ratio")
-    add("--offsets", type=numbers, required=True, help="distances from the centre, in half-widths")
-
-
-def _add_wedge(problems: Parsers) -> None:
-    parser = _problem(problems, "wedge", wedge, "stresses of a wedge pressed on both faces near its tip")
-    parser.add_argument("--gamma-deg", type=number, required=True, help="slope angle of the faces (degrees)")
-    parser.add_argument("--r", type=numbers, required=True, help="distances from the tip")
-    parser.add_argument("--theta-deg", type=numbers, required=True, help="angles from the bisector (degrees)")
-    parser.add_argument(
-        "--half-width", type=number, default=1.0, help="pressed length of each face (default 1)"
-    )
-
-
-def _problem(
-    problems: Parsers, name: str, run: Callable[[argparse.Namespace], int], text: str
-) -> argparse.ArgumentParser:
-    parser = problems.add_parser(
-        name,
-        help=text,
-        description=text.capitalize() + ".",
-        epilog=_epilog(name),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    add_json(parser)
-    parser.set_defaults(run=run)
-    return parser
+    for name, run, options, text in (
+        ("strip", strip, WAVE_OPTIONS, "pressed strip on a sinusoidal boundary, to first order"),
+        ("wedge", wedge, WEDGE_OPTIONS, "stresses of a wedge pressed on both faces near its tip"),
+        ("fem", fem, WAVE_OPTIONS, "pressed strip on a sinusoidal boundary, by finite elements"),
+        ("map", coefficient_map, MAP_OPTIONS,
+         "error of flat influence coefficients on sinusoidal waves, as a table; minutes"),
+        ("look-up", appendix_tables.look_up, appendix_tables.LOOK_UP_OPTIONS,
+         "error of flat coefficients in the plane, from the shipped map"),
+        ("element", appendix_tables.element, appendix_tables.ELEMENT_OPTIONS,
+         "error of flat coefficients of a square element in three dimensions, from the shipped table"),
+        ("surface", half_space.surface, half_space.OPTIONS,
+         "how far a half-space may be trusted on one's own surface; three solves"),
+    ):  # fmt: skip
+        about = text.capitalize() + "."
+        made = subcommand(problems, name, run, options, help=text, description=about, epilog=_epilog(name))
+        if name in GROUPS:
+            title, body, rows = GROUPS[name]
+            declare(made.add_argument_group(title, body), rows)
 
 
 def _epilog(*names: str) -> str:
@@ -161,11 +106,10 @@ def _epilog(*names: str) -> str:
 def strip(options: argparse.Namespace) -> int:
     """Displacements of a wavy boundary, correct to first order in its slope, and of a flat one."""
     from appendix_a.strip import first_order
-    from verification.cli.appendix_tables import first_order_caution
 
     with _by_option():
         wavy, flat = first_order(*_wave(options), offsets=options.offsets)
-    caution = first_order_caution(*_wave(options))
+    caution = appendix_tables.first_order_caution(*_wave(options))
     document = {
         "offsets": options.offsets, "wavy": wavy.tolist(), "flat": flat.tolist(), "caution": caution,
     }  # fmt: skip

@@ -8,38 +8,32 @@ from functools import cache
 from importlib.resources import as_file, files
 from typing import TYPE_CHECKING
 
+from verification.cli.options import Options, option
 from verification.cli.output import columns, emit
 
 if TYPE_CHECKING:
     from appendix_a.fem.coefficient_map import CoefficientMap
 
-LOOK_UP = "error of flat coefficients in the plane, from the shipped map"
-ELEMENT = "error of flat coefficients of a square element in three dimensions, from the shipped table"
 SHARE = 0.1  # second order over first; more has a caution
-
-
-def add_look_up(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of the plane map."""
-    add = parser.add_argument
-    add("--slope-deg", type=float, required=True, help="maximum slope of the profile (degrees)")
-    add("--wavelength", type=float, required=True, help="in half-widths of the strip")
-    add("--position", type=float, required=True, help="crest 0, flank 0.25, valley 0.5")
-    add("--nu", type=float, required=True, help="Poisson's ratio")
-    _add_upper(parser)
-
-
-def add_element(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of the table in three dimensions."""
-    parser.add_argument("--slope-deg", type=float, required=True, help="maximum slope of the wave (degrees)")
-    parser.add_argument("--nu", type=float, required=True, help="Poisson's ratio")
-    _add_upper(parser)
-
-
-def _add_upper(parser: argparse.ArgumentParser) -> None:
-    pair = parser.add_argument_group("a pair", "the first orders enter as lower minus upper")
-    pair.add_argument("--E", type=float, default=1.0, help="modulus of the lower body (any unit)")
-    pair.add_argument("--upper-E", type=float, help="modulus of the upper body, the same unit")
-    pair.add_argument("--upper-nu", type=float, help="its Poisson's ratio")
+LOOK_UP_OPTIONS: Options = {
+    "--slope-deg": option("maximum slope of the profile (degrees)", type=float, required=True),
+    "--wavelength": option("in half-widths of the strip", type=float, required=True),
+    "--position": option("crest 0, flank 0.25, valley 0.5", type=float, required=True),
+    "--nu": option("Poisson's ratio", type=float, required=True),
+}
+ELEMENT_OPTIONS: Options = {
+    "--slope-deg": option("maximum slope of the wave (degrees)", type=float, required=True),
+    "--nu": option("Poisson's ratio", type=float, required=True),
+}
+PAIR: tuple[str, str, Options] = (
+    "a pair",
+    "the first orders enter as lower minus upper",
+    {
+        "--E": option("modulus of the lower body (any unit)", type=float, default=1.0),
+        "--upper-E": option("modulus of the upper body, the same unit", type=float),
+        "--upper-nu": option("its Poisson's ratio", type=float),
+    },
+)
 
 
 @cache

@@ -14,13 +14,10 @@ PATCH_UNITS = {"area": "m^2", "load": "N", "mean_pressure": "Pa", "max_pressure"
 """Units of the columns of a table of patches; the others have none."""
 
 
-def check(npz: Path | None, netcdf: Path | None) -> None:
-    """Refuse, before any work, a file of another suffix, or NetCDF without its library. Raises InputError."""
+def require_netcdf(netcdf: Path | None) -> None:
+    """Refuse, before any work, NetCDF without its library. Raises InputError."""
     from refimpl.errors import InputError
 
-    for option, path, suffix in (("--npz", npz, ".npz"), ("--netcdf", netcdf, ".nc")):
-        if path is not None and path.suffix != suffix:
-            raise InputError(option, str(path), f"a file name that ends in {suffix}")
     if netcdf is not None:
         try:
             import h5netcdf  # noqa: F401  # only whether it is there

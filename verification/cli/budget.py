@@ -32,12 +32,9 @@ def made(scene: Scene, solution: Solution, tolerances: Mapping[str, float]) -> B
     """The budgets, and a line for who waits. Raises as `refimpl.sensitivities.budget` does."""
     from refimpl.sensitivities.budget import budget
 
-    line = StatusLine()
-    line.show("uncertainty budget: what every parameter changes")
-    try:
+    with StatusLine() as line:
+        line.show("uncertainty budget: what every parameter changes")
         return budget(scene, solution, tolerances)
-    finally:
-        line.close()
 
 
 def document(budgets: Budgets) -> dict[str, object]:

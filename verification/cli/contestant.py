@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from verification.cli import contestant_report, suite_table
 from verification.cli.contestant_report import Judged
-from verification.cli.output import columns, emit, output_file
+from verification.cli.options import Options, declare, option, output_file
+from verification.cli.output import check_suffix, columns, emit, select_or_refuse
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -20,7 +21,44 @@ if TYPE_CHECKING:
     from verification.solver_suite.check import Check
     from verification.solver_suite.process import Source
 
-ONLY_WITH_SOLVER = ("able", "largest", "precision", "timeout", "table", "discretisation", "thorough")
+WHO: Options = {
+    "--solver": option(
+        "a Python function of one ContactProblem, see its module; or one of the published codes "
+        "tamaas, contactmechanics, aspher, slippy",
+        metavar="MODULE:FUNCTION",
+    ),
+    "--exec": option(
+        "a program, run as COMMAND DIRECTORY; files: solver_suite/command.py", metavar="COMMAND"
+    ),
+    "--self-test": option("run the suite on solvers that are wrong on purpose", action="store_true"),
+}
+OPTIONS: Options = {
+    "--able": option(
+        "of aperiodic,periodic,load,approach (default),coupling,rectangle,oblong-elements,hardness",
+        metavar="LIST",
+    ),
+    "--largest": option("most elements a side that it should be given", metavar="M", type=int),
+    "--precision": option("relative residual that it claims (default 1e-8)", metavar="P", type=float),
+    "--timeout": option(
+        "seconds for one problem (default 60); a --solver has 5 more", metavar="S", type=float
+    ),
+    "--discretisation": option(
+        "other: judge limits and orders of convergence in the place of equality with element-wise\n"
+        "pressures; exit status 0 when both hold, 3 when an order is low, 1 when a limit is wrong",
+        choices=("same", "other"),
+    ),
+    "--thorough": option(
+        "further problems of the covering designs after the suite, from other seeds",
+        action="store_const",
+        const=True,
+    ),
+    "--table": option(
+        "write a table of the run beside the published codes: FILE ends in .csv, .tex or .md",
+        metavar="FILE",
+        type=output_file,
+    ),
+}
+"""Options that mean nothing without a solver."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -31,56 +69,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "and --jobs say: the cases that are within its abilities; the others are named. Of the abilities\n"
         "that a Python function carries, --able, --largest and --precision replace only what they state.",
     )
-    who = group.add_mutually_exclusive_group()
-    who.add_argument(
-        "--solver",
-        metavar="MODULE:FUNCTION",
-        help="a Python function of one ContactProblem, see its module; or one of the published codes "
-        "tamaas, contactmechanics, aspher, slippy",
-    )
-    who.add_argument(
-        "--exec",
-        metavar="COMMAND",
-        help="a program, run as COMMAND DIRECTORY; files: solver_suite/command.py",
-    )
-    who.add_argument(
-        "--self-test", action="store_true", help="run the suite on solvers that are wrong on purpose"
-    )
-    group.add_argument(
-        "--able",
-        metavar="LIST",
-        help="of aperiodic,periodic,load,approach (default),coupling,rectangle,oblong-elements,hardness",
-    )
-    group.add_argument(
-        "--largest", metavar="M", type=int, help="most elements a side that it should be given"
-    )
-    group.add_argument(
-        "--precision", metavar="P", type=float, help="relative residual that it claims (default 1e-8)"
-    )
-    group.add_argument(
-        "--timeout",
-        metavar="S",
-        type=float,
-        help="seconds for one problem (default 60); a --solver has 5 more",
-    )
-    group.add_argument(
-        "--discretisation",
-        choices=("same", "other"),
-        help="other: judge limits and orders of convergence in the place of equality with element-wise\n"
-        "pressures; exit status 0 when both hold, 3 when an order is low, 1 when a limit is wrong",
-    )
-    group.add_argument(
-        "--thorough",
-        action="store_const",
-        const=True,
-        help="further problems of the covering designs after the suite, from other seeds",
-    )
-    group.add_argument(
-        "--table",
-        metavar="FILE",
-        type=output_file,
-        help="write a table of the run beside the published codes: FILE ends in .csv, .tex or .md",
-    )
+    declare(group, WHO | OPTIONS, one_of=tuple(WHO))
 
 
 def chosen(options: argparse.Namespace) -> bool:
@@ -89,21 +78,20 @@ def chosen(options: argparse.Namespace) -> bool:
 
     if options.solver is not None or options.exec is not None:
         return True
-    for name in ONLY_WITH_SOLVER:
-        if getattr(options, name) is not None:
-            raise InputError(f"--{name}", getattr(options, name), "nothing without --solver or --exec")
+    for name in OPTIONS:
+        if (value := getattr(options, name.removeprefix("--"))) is not None:
+            raise InputError(name, value, "nothing without --solver or --exec")
     return False
 
 
 def run(options: argparse.Namespace) -> int:
     """Run or list the suite; status 1 when a case failed or broke, or none passed."""
     from verification.framework.case import readable
-    from verification.solver_suite import convergence
+    from verification.solver_suite import convergence, suite
 
     among = _among(options)
-    checks = _selected(options, among)
-    if options.table is not None:
-        suite_table.require_suffix(options.table)
+    checks = select_or_refuse(options.only, lambda: suite.select(options.only, among))
+    check_suffix("--table", options.table, suite_table.SUFFIXES)
     if options.list:
         listed = [{"id": c.id, "title": c.title, "claim": c.description} for c in checks]
         emit(listed, options.json, columns([[c.id, c.title] for c in checks], indent=""))
@@ -128,17 +116,6 @@ def _among(options: argparse.Namespace) -> tuple[Check, ...]:
             raise InputError("--thorough", True, "nothing beside --discretisation other")
         return convergence.CASES
     return suite.thorough() if options.thorough else suite.suite()
-
-
-def _selected(options: argparse.Namespace, among: tuple[Check, ...]) -> tuple[Check, ...]:
-    """Checks that ``--only`` names. Raises `InputError` where it names none."""
-    from refimpl.errors import InputError
-    from verification.solver_suite import suite
-
-    try:
-        return suite.select(options.only, among)
-    except LookupError as nothing:
-        raise InputError("--only", options.only, f"the id of a case ({nothing}; see --list)") from nothing
 
 
 def _judged(

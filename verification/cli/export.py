@@ -3,20 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
-from verification.cli.output import columns, emit
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """The option that names the folder."""
-    parser.add_argument(
-        "--export",
-        metavar="DIR",
-        type=Path,
-        help="run no case; write the problems of the suite for other solvers (of the cases that --only\n"
-        "selects, up to 64 elements a side) with certified pressures and proven bounds",
-    )
+from verification.cli.output import columns, emit, select_or_refuse
 
 
 def run(options: argparse.Namespace) -> int:
@@ -32,10 +20,7 @@ def run(options: argparse.Namespace) -> int:
     from verification.solver_suite.reference.files import Export
     from verification.solver_suite.reference.posed import problems
 
-    try:
-        progress = Progress(len(suite.select(options.only)))
-    except LookupError as nothing:
-        raise InputError("--only", options.only, f"the id of a case ({nothing})") from nothing
+    progress = Progress(len(select_or_refuse(options.only, lambda: suite.select(options.only))))
     failed = False
     bounds, uncertified, last = [], [], ""
     with limited_to_one_thread(), Export(options.export) as export:

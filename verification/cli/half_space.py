@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.output import check_outputs, columns, emit, files_of, output_file, wrapped
+from verification.cli.options import Options, option, output_file
+from verification.cli.output import PICTURES, check_outputs, check_suffix, columns, emit, files_of, wrapped
 
 if TYPE_CHECKING:
     from refimpl import Scene
@@ -21,39 +22,38 @@ ROWS = (  # name, label, factor, unit
     ("normal_force", "N at this approach", 1.0, "N"),
 )
 ALONE = {"E": 200e9, "nu": 0.3, "tau": 0.0, "beta": 0.1}  # assumed for a surface file
-FILE_OPTIONS = (*ALONE, "pressure", "unit", "pixel_size")
 
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
-    add = parser.add_argument
-    add("scene", metavar="SCENE|FILE", help="a scene (.toml, or a shipped one's name), or a surface's file")
-    add("--grid", type=int, default=128, help="elements along the longer side (default 128)")
-    add("--plot", metavar="FILE", type=output_file, help="map of the local coefficient error, .png or .svg")
-    alone = parser.add_argument_group(
-        "a surface's file", "its body is pressed by a rigid flat: the whole error of one body, none cancels"
-    )
-    add = alone.add_argument
-    add("--E", type=float, help="Young's modulus (Pa, default 200e9)")
-    add("--nu", type=float, help="Poisson's ratio (default 0.3)")
-    add("--tau", type=float, help="local friction's shear strength (Pa, default 0)")
-    add("--beta", type=float, help="local friction's pressure coefficient (default 0.1)")
-    add("--pressure", type=float, help="nominal pressure (Pa, default E* Sdq / 20)")
-    add("--unit", help="of the heights: m, mm, um, nm, A or pm")
-    add("--pixel-size", metavar="D", type=float, help="edge of a pixel (m)")
+OPTIONS: Options = {
+    "scene": option("a scene (.toml, or a shipped one's name), or a surface's file", metavar="SCENE|FILE"),
+    "--grid": option("elements along the longer side (default 128)", type=int, default=128),
+    "--plot": option("map of the local coefficient error, .png or .svg", metavar="FILE", type=output_file),
+}
+SURFACE_FILE: tuple[str, str, Options] = (
+    "a surface's file",
+    "its body is pressed by a rigid flat: the whole error of one body, none cancels",
+    {
+        "--E": option("Young's modulus (Pa, default 200e9)", type=float),
+        "--nu": option("Poisson's ratio (default 0.3)", type=float),
+        "--tau": option("local friction's shear strength (Pa, default 0)", type=float),
+        "--beta": option("local friction's pressure coefficient (default 0.1)", type=float),
+        "--pressure": option("nominal pressure (Pa, default E* Sdq / 20)", type=float),
+        "--unit": option("of the heights: m, mm, um, nm, A or pm"),
+        "--pixel-size": option("edge of a pixel (m)", metavar="D", type=float),
+    },
+)
+FILE_OPTIONS = tuple(name.removeprefix("--").replace("-", "_") for name in SURFACE_FILE[2])
 
 
 def surface(options: argparse.Namespace) -> int:
     """Solve, state the half-space's error in each number and on each element, and advise."""
     from refimpl.sensitivities.surface_verdict import surface_verdict
-    from verification.cli.plot_style import check_suffix
 
-    check_suffix(options.plot)
+    check_suffix("--plot", options.plot, PICTURES)
     scene, note = _posed(options)
     check_outputs([Path(options.scene), *files_of(scene)], plot=options.plot, json=options.json)
     verdict = surface_verdict(scene, options.grid)
     if options.plot is not None:
-        from verification.cli.plot_local_error import draw_local_error
+        from verification.cli.plot_surface import draw_local_error
 
         draw_local_error(verdict, options.plot)
     document = _document(options.scene, note, verdict)

@@ -7,15 +7,24 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.output import (
+from verification.cli.options import (
+    SCENE,
+    Options,
     Parsers,
+    loads,
+    names,
+    option,
+    output_file,
+    subcommand,
+)
+from verification.cli.output import (
+    PICTURES,
     StatusLine,
-    add_json,
     check_outputs,
+    check_suffix,
     columns,
     emit,
     files_of,
-    output_file,
     wrapped,
 )
 
@@ -35,27 +44,29 @@ lower_file (measured surfaces, relative to the table). The scene's friction is t
 load is not used, its [tolerances] add to the uncertainty. With --store a stopped fit goes on.
 """
 
+OPTIONS: Options = {
+    "scene": SCENE,
+    "data": option("the measured friction", metavar="DATA.csv", type=Path),
+    "--grid": option("elements along the longer side (default 256)", metavar="M", type=int, default=256),
+    "--loads": option("loads (N) at which mu is predicted", metavar="P,P,...", type=loads, default=()),
+    "--fit": option("fit the hardness as well", metavar="NAME,...", type=names, default=()),
+    "--realisations": option("draws of random surfaces (default 1)", metavar="N", type=int, default=1),
+    "--store": option("keep finished solves there, and go on", metavar="FILE.json", type=output_file),
+    "--plot": option("draw data, fit, ellipse and residuals", metavar="FILE.png", type=output_file),
+}
+
 
 def add_parser(commands: Parsers) -> None:
     """Declare the subcommand."""
-    parser = commands.add_parser(
+    subcommand(
+        commands,
         "identify",
+        run,
+        OPTIONS,
         help="find tau and beta from friction measured at several loads",
         description="Find tau and beta, with 95 % intervals, from friction measured at several loads.",
         epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    add = parser.add_argument
-    add("scene", metavar="SCENE", help="a TOML file, or the name of a shipped scene")
-    add("data", metavar="DATA.csv", type=Path, help="the measured friction")
-    add("--grid", metavar="M", type=int, default=256, help="elements along the longer side (default 256)")
-    add("--loads", metavar="P,P,...", type=_numbers, default=(), help="loads (N) at which mu is predicted")
-    add("--fit", metavar="NAME,...", type=_names, default=(), help="fit the hardness as well")
-    add("--realisations", metavar="N", type=int, default=1, help="draws of random surfaces (default 1)")
-    add("--store", metavar="FILE.json", type=output_file, help="keep finished solves there, and go on")
-    add("--plot", metavar="FILE.png", type=output_file, help="draw data, fit, ellipse and residuals")
-    add_json(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -63,17 +74,15 @@ def run(options: argparse.Namespace) -> int:
     from refimpl.identification import identify, read_rows
     from refimpl.scene.scene_file import read_scene, read_tolerances
     from verification.cli.identify_store import SolveStore, key
-    from verification.cli.plot_style import check_suffix
     from verification.framework.provenance import provenance
 
-    check_suffix(options.plot)
+    check_suffix("--plot", options.plot, PICTURES)
     scene, tolerances = read_scene(options.scene), read_tolerances(options.scene)
     inputs = [Path(options.scene), options.data, *files_of(scene)]
     check_outputs(inputs, store=options.store, plot=options.plot, json=options.json)
     rows = read_rows(options.data)
     store = None if options.store is None else SolveStore(options.store)
-    line = StatusLine()
-    try:
+    with StatusLine() as line:
         found = identify(
             scene,
             rows,
@@ -86,35 +95,12 @@ def run(options: argparse.Namespace) -> int:
             key=key,
             report=line.show,
         )
-    finally:
-        line.close()
     if options.plot is not None:
-        from verification.cli.plot_identify import draw
+        from verification.cli.plot_curves import draw_identification
 
-        draw(found, options.plot)
+        draw_identification(found, options.plot)
     emit(document(found) | {"provenance": provenance()}, options.json, table(found))
     return 0
-
-
-def _names(text: str) -> tuple[str, ...]:
-    """Names from text.
-
-    >>> _names("hardness, lower.material.hardness")
-    ('hardness', 'lower.material.hardness')
-    """
-    return tuple(name.strip() for name in text.split(","))
-
-
-def _numbers(text: str) -> tuple[float, ...]:
-    """Numbers from text.
-
-    >>> _numbers("5,80")
-    (5.0, 80.0)
-    """
-    try:
-        return tuple(float(item) for item in text.split(","))
-    except ValueError as alien:
-        raise argparse.ArgumentTypeError(f"{text!r} is no list of numbers like 5,80") from alien
 
 
 def document(found: Identification) -> dict[str, object]:
@@ -177,51 +163,30 @@ def _scaled(name: str) -> tuple[str, float]:
     >>> _scaled("lower.material.hardness")
     ('lower.material.hardness (MPa)', 1000000.0)
     """
-    return (f"{name} (MPa)", MEGA) if name.endswith("hardness") else (name, 1.0)
+    return (f"{name} (MPa)", MEGA) if name == "tau" or name.endswith("hardness") else (name, 1.0)
 
 
-def _shown(label: str, one: Interval, unit: float) -> list[str]:
-    return [label, f"{one.value / unit:.4g}", f"{one.low / unit:.4g} to {one.high / unit:.4g}"]
+def _cells(interval: Interval, unit: float = 1.0) -> list[str]:
+    """Value and ends of an interval in a unit."""
+    value, low, high = (f"{end / unit:.4g}" for end in (interval.value, interval.low, interval.high))
+    return [value, f"{low} to {high}"]
 
 
 def table(found: Identification) -> str:
     """Values, parts of their uncertainty, rows, laws and warnings."""
-    tau, beta, both = found.values["tau"], found.values["beta"], found.combination
-    further = {name: _scaled(name) for name in _further(found)}
-    values = [
-        ["", "value", "95 % interval"],
-        ["tau (MPa)", f"{tau.value / MEGA:.4g}", f"{tau.low / MEGA:.4g} to {tau.high / MEGA:.4g}"],
-        ["beta", f"{beta.value:.4g}", f"{beta.low:.4g} to {beta.high:.4g}"],
-        *(_shown(label, found.values[name], unit) for name, (label, unit) in further.items()),
-        [
-            f"{found.factor * MEGA:.3g} tau/MPa + beta",
-            f"{both.value:.4g}",
-            f"{both.low:.4g} to {both.high:.4g}",
-        ],
-    ]
-    units = [MEGA, 1.0, *(unit for _, unit in further.values())]
-    parts = [
-        ["standard uncertainty", "tau (MPa)", "beta", *(label for label, _ in further.values())],
-        *(
-            [name, *(f"{u / unit:.2g}" for u, unit in zip(part, units, strict=True))]
-            for name, part in found.shares.items()
-        ),
-    ]
+    scales = {name: _scaled(name) for name in found.values}
+    values = [["", "value", "95 % interval"]]
+    values += [[label, *_cells(found.values[name], unit)] for name, (label, unit) in scales.items()]
+    values.append([f"{found.factor * MEGA:.3g} tau/MPa + beta", *_cells(found.combination)])
+    parts = [["standard uncertainty", *(label for label, _ in scales.values())]]
+    for name, part in found.shares.items():
+        parts.append([name, *(f"{u / unit:.2g}" for u, (_, unit) in zip(part, scales.values(), strict=True))])
     rows = [["load (N)", "mu measured", "mu of the model", "95 % interval", "residual / u"]]
     for k, prediction in enumerate(found.predictions):
-        mu = prediction.mu
-        measured, residual = (
-            (f"{found.rows[k].mu:.4g}", f"{found.residuals[k]:+.1f}") if k < len(found.rows) else ("-", "-")
-        )
-        rows.append(
-            [
-                f"{prediction.load:.4g}",
-                measured,
-                f"{mu.value:.4g}",
-                f"{mu.low:.4g} to {mu.high:.4g}",
-                residual,
-            ]
-        )
+        is_row = k < len(found.rows)
+        measured = f"{found.rows[k].mu:.4g}" if is_row else "-"
+        residual = f"{found.residuals[k]:+.1f}" if is_row else "-"
+        rows.append([f"{prediction.load:.4g}", measured, *_cells(prediction.mu), residual])
     laws = [["law", "chi-square", "AICc", "BIC"]]
     laws += [[one.name, f"{one.chi_square:.3g}", f"{one.aicc:.3g}", f"{one.bic:.3g}"] for one in found.laws]
     ended = (

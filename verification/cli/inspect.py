@@ -5,16 +5,25 @@ from __future__ import annotations
 import argparse
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from verification.cli.output import (
+from verification.cli.options import (
+    Options,
     Parsers,
+    name_or_number,
+    one_or_two_lengths,
+    option,
+    output_file,
+    subcommand,
+)
+from verification.cli.output import (
+    PICTURES,
     StatusLine,
-    add_json,
     check_outputs,
+    check_suffix,
     columns,
     emit,
-    output_file,
+    plain,
     wrapped,
 )
 
@@ -30,53 +39,47 @@ EPILOG = """examples:
 """
 SCALES = ((1.0, "m"), (1e-3, "mm"), (1e-6, "um"), (1e-9, "nm"), (0.0, "pm"))
 
+OPTIONS: Options = {
+    "file": option("an instrument's file, .npy, .csv, .txt, .xyz ...", metavar="FILE"),
+    "--unit": option("of the heights: m, mm, um, nm, A or pm"),
+    "--pixel-size": option("edges of a pixel (m)", metavar="DX[,DY]", type=one_or_two_lengths),
+    "--channel": option("name or number; by default the first of heights", type=name_or_number),
+    "--level": option(
+        "plane (default), none, mean, paraboloid, cylinder, sphere, or a polynomial's degree",
+        type=name_or_number,
+    ),
+    "--outliers": option("drop points K spreads off their neighbours", metavar="K", type=float),
+    "--low-pass": option("damp wavelengths below L (m)", metavar="L", type=float),
+    "--high-pass": option("damp wavelengths above L (m)", metavar="L", type=float),
+    "--centre": option("middle of the window (m); needs --size", metavar="X,Y", type=one_or_two_lengths),
+    "--size": option("edges of the window (m)", metavar="LX[,LY]", type=one_or_two_lengths),
+    "--fit": option("fit a random surface, print it as TOML", choices=("gaussian", "self-affine")),
+    "--plot": option("map, autocorrelation, spectrum as PNG", metavar="FILE", type=output_file),
+}
+
 
 def add_parser(commands: Parsers) -> None:
     """Declare the subcommand."""
-    parser = commands.add_parser(
+    subcommand(
+        commands,
         "inspect",
+        run,
+        OPTIONS,
         help="a surface file: points, units, orientation, roughness parameters, picture",
         description="Read a file of heights as a scene would, and print what it holds and how rough it is.",
         epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("file", metavar="FILE", help="an instrument's file, .npy, .csv, .txt, .xyz ...")
-    parser.add_argument("--unit", help="of the heights: m, mm, um, nm, A or pm")
-    parser.add_argument("--pixel-size", metavar="DX[,DY]", type=_pair, help="edges of a pixel (m)")
-    parser.add_argument("--channel", type=_channel, help="name or number; by default the first of heights")
-    parser.add_argument(
-        "--level",
-        type=_level,
-        help="plane (default), none, mean, paraboloid, cylinder, sphere, or a polynomial's degree",
-    )
-    parser.add_argument(
-        "--outliers", metavar="K", type=float, help="drop points K spreads off their neighbours"
-    )
-    parser.add_argument("--low-pass", metavar="L", type=float, help="damp wavelengths below L (m)")
-    parser.add_argument("--high-pass", metavar="L", type=float, help="damp wavelengths above L (m)")
-    parser.add_argument("--centre", metavar="X,Y", type=_pair, help="middle of the window (m); needs --size")
-    parser.add_argument("--size", metavar="LX[,LY]", type=_pair, help="edges of the window (m)")
-    parser.add_argument(
-        "--fit", choices=("gaussian", "self-affine"), help="fit a random surface, print it as TOML"
-    )
-    parser.add_argument(
-        "--plot", metavar="FILE", type=output_file, help="map, autocorrelation, spectrum as PNG"
-    )
-    add_json(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Inspect the file."""
     from refimpl import inspect
-    from verification.cli.plot_style import check_suffix
 
-    check_suffix(options.plot)
+    check_suffix("--plot", options.plot, PICTURES)
     check_outputs([Path(options.file)], plot=options.plot, json=options.json)
     names = ("unit", "pixel_size", "channel", "level", "outliers", "low_pass", "high_pass", "centre")
     keys = {name: value for name in names if (value := getattr(options, name)) is not None}
-    line = StatusLine()
-    try:
+    with StatusLine() as line:
         line.show(f"{options.file}: reading")
         found = inspect(options.file, size=options.size, **keys)
         document, text = found.document(), table(found)
@@ -89,9 +92,7 @@ def run(options: argparse.Namespace) -> int:
             from verification.cli.plot_surface import draw_inspection
 
             draw_inspection(found, options.plot)
-    finally:
-        line.close()
-    emit(_finite(document), options.json, text)
+    emit(plain(document), options.json, text)
     return 0
 
 
@@ -136,30 +137,3 @@ def _length(value: float) -> str:
 
 def _both(pair: list[float]) -> str:
     return f"{_length(pair[0])} x {_length(pair[1])}"
-
-
-def _finite(value: Any) -> Any:
-    """The document with null for what is not a number."""
-    if isinstance(value, dict):
-        return {key: _finite(entry) for key, entry in value.items()}
-    if isinstance(value, list):
-        return [_finite(entry) for entry in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
-def _pair(text: str) -> tuple[float, float]:
-    try:
-        numbers = [float(word) for word in text.split(",")]
-    except ValueError:
-        numbers = []
-    if len(numbers) not in (1, 2):
-        raise argparse.ArgumentTypeError(f"expected a length in m, or two with a comma between, not {text!r}")
-    return numbers[0], numbers[-1]
-
-
-def _channel(text: str) -> str | int:
-    return int(text) if text.isdecimal() else text
-
-
-def _level(text: str) -> str | int:
-    return int(text) if text.isdecimal() else text

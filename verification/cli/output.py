@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import argparse
 import itertools
+import math
 import os
 import sys
 import textwrap
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Self, TypeVar
 
-from verification.framework.files import is_stream, to_json, try_out, write_text
+from verification.framework.files import is_stream, to_json, write_text
 
 if TYPE_CHECKING:
     from refimpl import Scene
@@ -20,31 +20,8 @@ if TYPE_CHECKING:
 
 WIDTH = 100
 """Columns that tables and texts keep within."""
-
-Parsers: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"
-
-
-def output_file(text: str) -> Path:
-    """Argument type of a file to write: refused at once where it could not be written in the end."""
-    path = Path(text)
-    if not text:  # it would be the working directory
-        raise argparse.ArgumentTypeError("expected a file's name, not ''")
-    if text == "-":
-        raise argparse.ArgumentTypeError("'-' is no file, and this is no text for standard output")
-    if os.path.isdir(path):  # no error for long names
-        raise argparse.ArgumentTypeError(f"{text!r} is a directory, not a file")
-    try:
-        try_out(path)
-    except OSError as refused:
-        raise argparse.ArgumentTypeError(f"cannot write {text!r}: {refused.strerror}") from refused
-    return path
-
-
-def output_text(text: str) -> Path:
-    """Argument type of a text to write: a file, or '-' for standard output."""
-    if not text:
-        raise argparse.ArgumentTypeError("expected a file's name, or '-' for standard output, not ''")
-    return Path(text) if text == "-" else output_file(text)
+PICTURES = (".png", ".svg", ".pdf")
+Selected = TypeVar("Selected")
 
 
 def check_outputs(inputs: Iterable[Path], **outputs: Path | Sequence[Path] | None) -> None:
@@ -68,6 +45,26 @@ def check_outputs(inputs: Iterable[Path], **outputs: Path | Sequence[Path] | Non
             raise InputError(f"--{option}", str(again), f"another file than that of --{first}")
 
 
+def select_or_refuse(only: Sequence[str], select: Callable[[], Selected]) -> Selected:
+    """Return what ``select`` finds; raises InputError where the patterns of ``--only`` match no case."""
+    from refimpl.errors import InputError
+
+    try:
+        return select()
+    except LookupError as nothing:
+        raise InputError("--only", only, f"the id of a case ({nothing}; see --list)") from nothing
+
+
+def check_suffix(option: str, path: Path | None, suffixes: Sequence[str]) -> None:
+    """Raise InputError, before any work, for a file whose name ends in none of the suffixes."""
+    from refimpl.errors import InputError
+
+    if path is not None and path.suffix not in suffixes:
+        *others, last = suffixes
+        ends = f"{', '.join(others)} or {last}" if others else last
+        raise InputError(option, str(path), f"a file name that ends in {ends}")
+
+
 def _one_file(path: Path, other: Path) -> bool:
     """Whether both names lead to one file, or would; links and hard links do."""
     if os.path.realpath(path) == os.path.realpath(other):
@@ -83,16 +80,6 @@ def files_of(scene: Scene) -> list[Path]:
     return [Path(part.path) for part in parts if isinstance(part, MeasuredSurface)]
 
 
-def add_json(parser: argparse.ArgumentParser) -> None:
-    """The option that every subcommand has."""
-    parser.add_argument(
-        "--json",
-        metavar="FILE",
-        type=output_text,
-        help="write the result as JSON ('-' for standard output)",
-    )
-
-
 def emit(document: object, path: Path | None, table: str) -> None:
     """Write the document where asked and show the table; '-' prints the document in the table's place."""
     if path == Path("-"):
@@ -103,6 +90,19 @@ def emit(document: object, path: Path | None, table: str) -> None:
             write_text(to_json(document), path)
     finally:  # the table is shown even if the file could not be written
         show(table)
+
+
+def plain(item: object) -> object:
+    """NaN and infinity, which JSON does not have, as None.
+
+    >>> plain({"a": [1.0, float("nan")]})
+    {'a': [1.0, None]}
+    """
+    if isinstance(item, Mapping):
+        return {key: plain(value) for key, value in item.items()}
+    if isinstance(item, list | tuple):
+        return [plain(value) for value in item]
+    return None if isinstance(item, float) and not math.isfinite(item) else item
 
 
 def emit_early(document: object, path: Path | None, table: str) -> None:
@@ -161,10 +161,19 @@ def wrapped(text: str, first: str) -> str:
 
 
 class StatusLine:
-    """Progress on one line of stderr that is rewritten; nothing when stderr is no terminal."""
+    """Progress on one line of stderr that is rewritten; nothing when stderr is no terminal.
+
+    At the end of a ``with`` block the line is cleared.
+    """
 
     def __init__(self) -> None:
         self._shown, self._next = sys.stderr.isatty(), 0.0
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
     def show(self, text: str) -> None:
         """Rewrite the line, at most ten times a second."""

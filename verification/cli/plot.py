@@ -6,10 +6,12 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from verification.cli.plot_maps import View, domain_map, gap_map, pressure_map, shear_map, view_of
 from verification.cli.plot_style import (
     AREAS,
     BLACK,
     BLUE,
+    GREEN,
     LENGTHS,
     ORANGE,
     PINK,
@@ -18,22 +20,23 @@ from verification.cli.plot_style import (
     unit_at_scale,
     write,
 )
-from verification.cli.plot_view import view_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
+    from numpy.typing import NDArray
 
     from refimpl import Scene, Solution
-    from verification.cli.plot_view import View
     from verification.exact.hertz import Sphere as HertzSphere
 
 WIDTH = 7.1  # inches, 180 mm: the width of a page's text
 LEFT, RIGHT = 0.6, 4.2  # inches, left edges of both columns
 MAP, LOWEST_MAP, GRAPH = 2.35, 1.0, 1.05  # inches: width of all panels, least height of a map, of a graph
 KEY = 2.15  # inches, least height of the numbers and the legend
+_BINS = 40  # bins of a histogram
+_GREY = "0.45"
 BELOW, ABOVE = 0.42, 0.25  # inches, for an axis with its label, and for a title
 
 
@@ -43,9 +46,6 @@ def draw(solution: Solution, scene: Scene, path: Path) -> None:
     Coordinates count from the domain's corner, as in arrays and tables. For a scene with a sphere the
     profiles have Hertz' pressure beside them.
     """
-    from verification.cli.plot_maps import gap_map, pressure_map, shear_map
-    from verification.cli.plot_profiles import gap_histogram, pressure_histogram, profile
-
     view = view_of(solution)
     hertz = hertz_of(scene, solution.normal_force)
     with print_style():
@@ -135,8 +135,6 @@ def _map_height(view: View) -> float:
 
 def _key(axes: Axes, solution: Solution, view: View, hertz: HertzSphere | None) -> None:
     """Whole domain where the maps show a part of it, numbers, and meaning of lines and colours."""
-    from verification.cli.plot_maps import domain_map
-
     axes.axis("off")
     if not view.whole:
         domain_map(axes.inset_axes((-0.08, 0.56, 0.44, 0.40)), solution, view)
@@ -159,7 +157,7 @@ def legend_of(solution: Solution, hertz: HertzSphere | None) -> list[Patch | Lin
     found = [
         line("pressure p", BLUE),
         line("shear r", ORANGE, (0, (3, 1))),
-        line("gap (right scale)", "0.45", ":"),
+        line("gap (right scale)", _GREY, ":"),
     ]
     if hertz is not None:
         found.append(line("Hertz' pressure, smooth", BLACK, (0, (5, 2)), 0.8))
@@ -170,3 +168,82 @@ def legend_of(solution: Solution, hertz: HertzSphere | None) -> list[Patch | Lin
     if (solution.excluded & solution.contact).any():
         patches.append(Patch(color=PINK, label="shear map: no adhesive shear, r = β p"))
     return [*found, *patches]
+
+
+def profile(axes: Axes, solution: Solution, view: View, hertz: HertzSphere | None, axis: int) -> None:
+    """Pressure, shear and, to the right, the gap on the line of elements through the peak, along one axis."""
+    import numpy as np
+
+    grid = solution.grid
+    across = view.peak[1 - axis]
+    window = slice(view.first[axis], view.last[axis])
+    s = (grid.x, grid.y)[axis][window] / view.length.size
+    gap_axes = axes.twinx()
+    gap = np.take(solution.gap, across, axis=1 - axis)[window] / view.gap.size
+    gap_axes.plot(s, np.maximum(gap, 0.0), color=_GREY, linestyle=":", linewidth=1.0)
+    gap_axes.set_ylabel(f"gap ({view.gap.name})", color=_GREY)
+    gap_axes.tick_params(colors=_GREY)
+    gap_axes.set_ylim(bottom=0.0)
+    for name, label, colour, dashes in (
+        ("pressure", "pressure p", BLUE, "-"),
+        ("traction", "shear r", ORANGE, (0, (3, 1))),
+    ):
+        line = np.take(getattr(solution, name), across, axis=1 - axis)[window] / view.pressure.size
+        axes.plot(s, line, color=colour, linestyle=dashes, linewidth=1.1, label=label)
+    if hertz is not None:
+        fine = np.linspace(s[0], s[-1], 1001)
+        middle = [length / 2 for length in grid.lengths]
+        offset = (grid.x, grid.y)[1 - axis][across] - middle[1 - axis]
+        radius = np.hypot(fine * view.length.size - middle[axis], offset)
+        smooth = hertz.pressure(radius) / view.pressure.size
+        axes.plot(fine, smooth, color=BLACK, linestyle=(0, (5, 2)), linewidth=0.8, label="Hertz, smooth")
+    letter, other = "xy" if axis == 0 else "yx"
+    place = (grid.x, grid.y)[1 - axis][across] / view.length.size
+    axes.set(
+        xlabel=f"{letter} ({view.length.name})", ylabel=f"p, r ({view.pressure.name})",
+        xlim=view.extent[2 * axis : 2 * axis + 2],
+        title=f"profile through the peak, {other} = {place:.4g} {view.length.name}",
+    )  # fmt: skip
+    axes.set_ylim(bottom=0.0)
+    axes.set_zorder(gap_axes.get_zorder() + 1)
+    axes.patch.set_visible(False)
+
+
+def pressure_histogram(axes: Axes, solution: Solution, view: View) -> None:
+    """Share of the contact by pressure; what is at the hardness is a line with its share."""
+    import numpy as np
+
+    plastic = solution.plastic
+    elastic = solution.pressure[solution.contact & ~plastic] / view.pressure.size
+    top = solution.max_pressure / view.pressure.size
+    _histogram(axes, elastic, top, int(np.count_nonzero(solution.contact)), BLUE)
+    if plastic.any():
+        axes.axvline(top, color=ORANGE, linewidth=1.2)
+    share = f"; {100 * solution.plastic_share:.3g} % at the hardness (line)" if plastic.any() else ""
+    axes.set(xlabel=f"pressure p ({view.pressure.name})", title=f"pressure in contact{share}")
+    axes.set_xlim(0.0, 1.03 * top if top else 1.0)
+
+
+def gap_histogram(axes: Axes, solution: Solution, view: View) -> None:
+    """Share of the window by gap, outside of the contact, whose share the title states."""
+    import numpy as np
+
+    contact = view.cut(solution.contact)
+    gap = view.cut(solution.gap)[~contact] / view.gap.size
+    if len(gap):
+        top = float(np.percentile(gap, 99.9)) or 1.0
+        _histogram(axes, gap, top, contact.size, GREEN)
+        axes.set_xlim(0.0, top)
+    where = "domain" if view.whole else "window"
+    axes.set(xlabel=f"gap ({view.gap.name})", ylabel="share (%)")
+    axes.set_title(f"gap; {100 * contact.mean():.3g} % of the {where} in contact")
+
+
+def _histogram(axes: Axes, values: NDArray[Any], top: float, count: int, colour: str) -> None:
+    """Draw the shares of ``count`` elements by value, up to ``top``; nothing without values."""
+    import numpy as np
+
+    if len(values):
+        weights = np.full(len(values), 100 / count)
+        axes.hist(values, bins=_BINS, range=(0.0, top), weights=weights, histtype="stepfilled", color=colour)
+    axes.set_ylabel("share (%)")

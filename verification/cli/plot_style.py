@@ -49,14 +49,6 @@ def unit_at_scale(value: float, units: tuple[Unit, ...]) -> Unit:
     return next((unit for unit in reversed(units) if abs(value) >= unit.size * (1 - 1e-9)), units[0])
 
 
-def check_suffix(path: Path | None) -> None:
-    """Refuse, before any work, a picture of another format. Raises InputError."""
-    from refimpl.errors import InputError
-
-    if path is not None and path.suffix not in FORMATS:
-        raise InputError("--plot", str(path), f"a file name that ends in {', '.join(FORMATS)}")
-
-
 @contextmanager
 def print_style() -> Iterator[None]:
     """Within the block figures are made for print, and need no display."""
@@ -67,7 +59,17 @@ def print_style() -> Iterator[None]:
         yield
 
 
-def write(figure: Figure, path: Path) -> None:
+def subplots(*shape: int, **options: Any) -> tuple[Figure, Any]:
+    """Return a figure and its axes, as pyplot does, without a display."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    return plt.subplots(*shape, layout="constrained", **options)
+
+
+def write(figure: Figure, path: Path, dpi: int = DPI) -> None:
     """Write a figure in the format of its suffix, in one step, and close it."""
     import matplotlib.pyplot as plt
 
@@ -75,6 +77,6 @@ def write(figure: Figure, path: Path) -> None:
 
     try:
         with replacing(path) as temporary:
-            figure.savefig(temporary, dpi=DPI, format=path.suffix[1:])
+            figure.savefig(temporary, dpi=dpi, format=path.suffix[1:])
     finally:
         plt.close(figure)

@@ -1,4 +1,4 @@
-"""An inspected surface as a picture: map with its axes, autocorrelation, spectrum."""
+"""Pictures of surfaces: an inspected one with autocorrelation and spectrum, a half-space's local error."""
 
 from __future__ import annotations
 
@@ -6,26 +6,21 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.plot_style import BLACK, BLUE, ORANGE
+from verification.cli.plot_style import BLACK, BLUE, ORANGE, print_style, subplots, write
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from refimpl import Inspection
+    from refimpl.sensitivities.surface_verdict import SurfaceVerdict
 
-MICRO, NANO = 1e-6, 1e-9
+MILLI, MICRO, NANO = 1e-3, 1e-6, 1e-9
+SLENDER = 4.0  # ratio of the lengths from which a profile shows more than a map
 
 
 def draw_inspection(found: Inspection, path: Path) -> None:
     """Write the picture: the map above, its autocorrelation and its spectrum beside and below."""
-    import matplotlib
-
-    matplotlib.use("Agg")  # no display is needed
-    import matplotlib.pyplot as plt
-
-    from verification.framework.files import replacing
-
-    figure, axes = plt.subplots(2, 2, figsize=(10, 8.5), layout="constrained")
+    figure, axes = subplots(2, 2, figsize=(10, 8.5))
     draw_map(axes[0, 0], found)
     _autocorrelation_map(axes[0, 1], found)
     _profiles(axes[1, 0], found)
@@ -35,9 +30,7 @@ def draw_inspection(found: Inspection, path: Path) -> None:
         f"{found.surface.label}: Sq = {numbers['Sq'] / NANO:.4g} nm, Sdq = {numbers['Sdq']:.3g}, "
         f"Sal = {numbers['Sal'] / MICRO:.3g} µm, {found.surface.level} subtracted"
     )
-    with replacing(path) as temporary:
-        figure.savefig(temporary, dpi=120)
-    plt.close(figure)
+    write(figure, path, dpi=120)
 
 
 def draw_map(axes: Axes, found: Inspection) -> None:
@@ -86,3 +79,69 @@ def _spectrum(axes: Axes, found: Inspection) -> None:
         xlabel="q = 2π / wavelength (rad/µm)", ylabel="C (µm² nm²)",
         title="Power spectral density, mean over directions",
     )  # fmt: skip
+
+
+def draw_local_error(verdict: SurfaceVerdict, path: Path) -> None:
+    """Write the picture, in the format of the path's suffix; maps in vector formats are images within."""
+    low, high = sorted(verdict.solution.grid.lengths)
+    slender = high > SLENDER * low
+    with print_style():
+        figure, axes = subplots(figsize=(4.4, 2.8 if slender else 3.8))
+        (_error_profile if slender else _error_map)(axes, verdict)
+        figure.suptitle(_title(verdict), fontsize=8)
+        write(figure, path)
+
+
+def _title(verdict: SurfaceVerdict) -> str:
+    percents = [_percent(verdict, name) for name in ("normal_force", "friction_coefficient", "contact_area")]
+    return (
+        f"Flat coefficients off by more than 2 % on {verdict.share_above:.1%} of the area;\n"
+        f"N at the approach by {percents[0]}, mu by {percents[1]}, A by {percents[2]} (stated)"
+    )
+
+
+def _percent(verdict: SurfaceVerdict, name: str) -> str:
+    row = verdict.numbers()[name]
+    return f"{row['stated'] / abs(row['value']):.1%}" if row["value"] else "-"
+
+
+def _error_map(axes: Axes, verdict: SurfaceVerdict) -> None:
+    """Error in percent, the contact outlined, elements beyond the tables in grey."""
+    import numpy as np
+
+    grid = verdict.solution.grid
+    lx, ly = (length / MILLI for length in grid.lengths)
+    shown = axes.imshow(
+        np.ma.masked_invalid(100 * verdict.local.T), origin="lower", extent=(0, lx, 0, ly), cmap="cividis",
+        interpolation="nearest", vmin=0.0,
+    )  # fmt: skip
+    axes.set_facecolor("0.6")
+    axes.figure.colorbar(shown, ax=axes, label="error of a flat's coefficients (%)")
+    contact = verdict.solution.contact
+    if contact.any() and not contact.all():
+        axes.contour(
+            grid.x / MILLI,
+            grid.y / MILLI,
+            contact.T.astype(float),
+            levels=[0.5],
+            colors=ORANGE,
+            linewidths=0.9,
+        )
+    axes.set(xlabel="x (mm)", ylabel="y (mm)", title="at the undeformed slopes; orange: contact")
+
+
+def _error_profile(axes: Axes, verdict: SurfaceVerdict) -> None:
+    """Largest error across the longer side, where contact is, and the paper's 2 %."""
+    import numpy as np
+
+    grid = verdict.solution.grid
+    along = 0 if grid.lengths[0] >= grid.lengths[1] else 1
+    where = (grid.x, grid.y)[along] / MILLI
+    error = 100 * verdict.local.max(axis=1 - along)
+    axes.plot(where, np.where(np.isfinite(error), error, np.nan), color=BLUE)
+    touching = verdict.solution.contact.any(axis=1 - along)
+    bottom = np.zeros_like(where)
+    axes.plot(where, np.where(touching, bottom, np.nan), color=ORANGE, linewidth=5, label="contact")
+    axes.axhline(2.0, color=BLACK, linewidth=0.8, linestyle=":", label="2 %")
+    axes.set(xlabel=f"{'xy'[along]} (mm)", ylabel="error of a flat's coefficients (%)")
+    axes.legend(frameon=False)

@@ -10,7 +10,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from verification.cli.output import Parsers, StatusLine, add_json, check_outputs, columns, emit
+from verification.cli.options import Options, Parsers, option, subcommand
+from verification.cli.output import StatusLine, check_outputs, columns, emit
 from verification.cli.pdf import PAPERS, compacts, printed
 
 EPILOG = """examples:
@@ -19,31 +20,28 @@ EPILOG = """examples:
   rough-friction report --results results.json --against older.json --pdf --paper letter
 """
 
+OPTIONS: Options = {
+    "--results": option("result file", metavar="FILE", type=Path, default=Path("results.json")),
+    "--output": option("folder for the report", metavar="DIR", type=Path, default=Path("report")),
+    "--committed": option("committed results (default: those of the package)", metavar="DIR", type=Path),
+    "--against": option("say what changed since this result file", metavar="OLD", type=Path),
+    "--pdf": option("also print it to PDF, by an installed Chromium", action="store_true"),
+    "--paper": option("size of paper (default a4)", choices=sorted(PAPERS), default="a4"),
+}
+
 
 def add_parser(commands: Parsers) -> None:
     """Declare the subcommand."""
-    parser = commands.add_parser(
+    subcommand(
+        commands,
         "report",
+        run,
+        OPTIONS,
         help="make the validation report",
         description="Make the validation report, one HTML file, from a result file of 'verify' and the\n"
         "committed results of long cases and studies.",
         epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument(
-        "--results", metavar="FILE", type=Path, default=Path("results.json"), help="result file"
-    )
-    parser.add_argument(
-        "--output", metavar="DIR", type=Path, default=Path("report"), help="folder for the report"
-    )
-    parser.add_argument(
-        "--committed", metavar="DIR", type=Path, help="committed results (default: those of the package)"
-    )
-    parser.add_argument("--against", metavar="OLD", type=Path, help="say what changed since this result file")
-    parser.add_argument("--pdf", action="store_true", help="also print it to PDF, by an installed Chromium")
-    parser.add_argument("--paper", choices=sorted(PAPERS), default="a4", help="size of paper (default a4)")
-    add_json(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -62,11 +60,8 @@ def run(options: argparse.Namespace) -> int:
     read = [options.results, *([] if options.against is None else [options.against]), *folder.glob("*.json")]
     check_outputs(read, output=[path, path.with_suffix(".pdf")], json=options.json)
     _check_folder(options.output)
-    line = StatusLine()
-    try:
+    with StatusLine() as line:
         page = rendered(results, options.results, committed, folder, against, line.show)
-    finally:
-        line.close()
     try:
         options.output.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError, PermissionError) as refused:
@@ -115,7 +110,7 @@ def _check_folder(output: Path) -> None:
 
 def read_run(path: Path, option: str = "--results") -> Any:
     """A result file of `verify`, checked; raises InputError, naming the option, for anything else."""
-    return _checked(option, path, _read(option, path))
+    return _checked(option, path, read_or_refuse(option, path))
 
 
 def _committed(path: Path) -> Any:
@@ -123,7 +118,7 @@ def _committed(path: Path) -> Any:
     from refimpl.errors import InputError
     from reports.results import FORMAT
 
-    found = _read("--committed", path)
+    found = read_or_refuse("--committed", path)
     if not isinstance(found, dict):
         raise InputError("--committed", str(path), "a result file: a JSON object")
     return _checked("--committed", path, found) if found.get("format") == FORMAT else found
@@ -135,11 +130,12 @@ def _checked(option: str, path: Path, found: object) -> Any:
 
     try:
         return check(found)
-    except ResultFileError as alien:
-        raise InputError(option, str(path), f"a result file of 'verify' ({alien})") from alien
+    except ResultFileError as wrong:
+        raise InputError(option, str(path), f"a result file of 'verify' ({wrong})") from wrong
 
 
-def _read(option: str, path: Path) -> Any:
+def read_or_refuse(option: str, path: Path) -> Any:
+    """Return the document of a result file; raises InputError, naming the option, for no such file."""
     from refimpl.errors import InputError
     from reports.result_files import read_result
     from verification.framework.files import is_stream
@@ -155,5 +151,5 @@ def _read(option: str, path: Path) -> Any:
         raise InputError(option, str(path), f"a file that can be read ({refused.strerror})") from refused
     except InputError:
         raise
-    except (ValueError, RecursionError) as broken:  # JSON, UTF-8, or thousands of digits
-        raise InputError(option, str(path), f"JSON ({broken})") from broken
+    except (ValueError, RecursionError) as corrupt:  # JSON, UTF-8, or thousands of digits
+        raise InputError(option, str(path), f"JSON ({corrupt})") from corrupt

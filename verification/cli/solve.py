@@ -8,19 +8,29 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from verification.cli.argument_types import elements, gigabytes, lengths, on_or_off
-from verification.cli.output import (
+from verification.cli.options import (
+    Options,
     Parsers,
+    elements,
+    gigabytes,
+    lengths,
+    on_or_off,
+    option,
+    output_file,
+    subcommand,
+)
+from verification.cli.output import (
+    PICTURES,
     StatusLine,
-    add_json,
     check_outputs,
+    check_suffix,
     emit,
     emit_early,
     files_of,
-    output_file,
+    plain,
     wrapped,
 )
-from verification.cli.solve_table import document, plain, show_finished, table
+from verification.cli.solve_table import document, show_finished, table
 
 if TYPE_CHECKING:
     from refimpl import Scene, Solution
@@ -44,7 +54,8 @@ Shipped scenes: hertz, metal-polymer, rough-planes, table1-rough, table1-smooth.
 """
 
 DEFAULT_GRID = 256
-FILES = ("plot", "vtk", "npz", "netcdf", "patches")
+SUFFIXES = {"plot": PICTURES, "vtk": (".vtk", ".vtu"), "npz": (".npz",), "netcdf": (".nc",)}
+FILES = (*SUFFIXES, "patches")
 # Options of refimpl, which --help does not wait for.
 METHODS = ("fft", "dense", "paper")
 ACCURATE = ("friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure")
@@ -54,83 +65,74 @@ PASSED_ON = ("grid", "accuracy", "quantity", "method", "approach", "tolerance")
 LIMITS = ("max_grid", "max_seconds", "max_memory")
 SWITCHES = ("coupled", "oblique", "tilted", "slope_correction", "plastic")
 
+OPTIONS: Options = {
+    "scene": option("a scene's TOML file, or the name of a shipped scene", metavar="SCENE"),
+    "--grid": option(
+        f"N elements along the longer side, or both numbers, 128x64 (default {DEFAULT_GRID})",
+        metavar="N",
+        type=elements,
+    ),
+    "--max-grid": option("with --accuracy: at most N elements along the longer side", metavar="N", type=int),
+    "--max-seconds": option("with --accuracy: at most so many seconds in all", metavar="S", type=float),
+    "--max-memory": option("with --accuracy: at most so many GB for a grid", metavar="GB", type=gigabytes),
+    "--accuracy": option("refine until the error bar is this share of mu", metavar="A", type=float),
+    "--quantity": option(
+        f"what --accuracy is about: {', '.join(ACCURATE)} (default mu; without friction, A)",
+        metavar="Q",
+        choices=ACCURATE,
+    ),
+    "--method": option(
+        "production solver (default), plain reference for small grids, or the paper's scheme",
+        choices=METHODS,
+        default="fft",
+    ),
+    "--size": option("lengths of the domain (m), in place of the scene's", metavar="LXxLY", type=lengths),
+    "--approach": option("prescribe the approach (m) instead of the load", metavar="D", type=float),
+    **{
+        f"--{name}": option(
+            f"include or exclude {terms} (default: the scene decides)",
+            action=argparse.BooleanOptionalAction,
+            default=None,
+        )
+        for name, terms in (
+            ("oblique", "every slope term"),
+            ("coupled", "normal-tangential coupling"),
+            ("tilted", "the slope change by shear"),
+        )
+    },
+    "--slope-correction": option("exact tractions of oblique facets in Eq. (7)", action="store_true"),
+    "--plastic": option(
+        "end pressures at the hardness, or never (default: the scene's own, or where they reach it)",
+        metavar="on|off",
+        type=on_or_off,
+    ),
+    "--explain": option("print what the scene requires, without solving it", action="store_true"),
+    "--tolerance": option("for the certificate (default 1e-8; paper 1e-4)", metavar="T", type=float),
+    "--budget": option(
+        "uncertainty budget and derivatives (under a load, a file with [tolerances] has it in any case)",
+        action="store_true",
+    ),
+    "--strict": option("exit status 1 too where a number of the table is not usable", action="store_true"),
+    "--plot": option("maps and profiles (.png, .svg or .pdf)", metavar="FILE", type=output_file),
+    "--vtk": option("both deformed surfaces, for ParaView", metavar="FILE.vtu", type=output_file),
+    "--npz": option("fields with coordinates and units, for numpy", metavar="FILE.npz", type=output_file),
+    "--netcdf": option("the same as NetCDF, for xarray", metavar="FILE.nc", type=output_file),
+    "--patches": option("table of contact patches as CSV", metavar="FILE.csv", type=output_file),
+}
+
 
 def add_parser(commands: Parsers) -> None:
     """Declare the subcommand."""
-    parser = commands.add_parser(
+    subcommand(
+        commands,
         "solve",
+        run,
+        OPTIONS,
+        one_of=("--grid", "--accuracy"),
         help="solve a scene",
         description="Solve a scene: friction, contact area, pressures, and how well it converged.",
         epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    add = parser.add_argument
-    add("scene", metavar="SCENE", help="a scene's TOML file, or the name of a shipped scene")
-    size = parser.add_mutually_exclusive_group().add_argument
-    size(
-        "--grid",
-        metavar="N",
-        type=elements,
-        help=f"N elements along the longer side, or both numbers, 128x64 (default {DEFAULT_GRID})",
-    )
-    add("--max-grid", metavar="N", type=int, help="with --accuracy: at most N elements along the longer side")
-    add("--max-seconds", metavar="S", type=float, help="with --accuracy: at most so many seconds in all")
-    add("--max-memory", metavar="GB", type=gigabytes, help="with --accuracy: at most so many GB for a grid")
-    size("--accuracy", metavar="A", type=float, help="refine until the error bar is this share of mu")
-    add(
-        "--quantity",
-        metavar="Q",
-        choices=ACCURATE,
-        help=f"what --accuracy is about: {', '.join(ACCURATE)} (default mu; without friction, A)",
-    )
-    add(
-        "--method",
-        choices=METHODS,
-        default="fft",
-        help="production solver (default), plain reference for small grids, or the paper's scheme",
-    )
-    add("--size", metavar="LXxLY", type=lengths, help="lengths of the domain (m), in place of the scene's")
-    add("--approach", metavar="D", type=float, help="prescribe the approach (m) instead of the load")
-    add(
-        "--oblique",
-        action=argparse.BooleanOptionalAction,
-        default=None,
-        help="include or exclude every slope term (default: the scene decides)",
-    )
-    add(
-        "--coupled",
-        action=argparse.BooleanOptionalAction,
-        default=None,
-        help="include or exclude normal-tangential coupling (default: the scene decides)",
-    )
-    add(
-        "--tilted",
-        action=argparse.BooleanOptionalAction,
-        default=None,
-        help="include or exclude the slope change by shear (default: the scene decides)",
-    )
-    add("--slope-correction", action="store_true", help="exact tractions of oblique facets in Eq. (7)")
-    add(
-        "--plastic",
-        metavar="on|off",
-        type=on_or_off,
-        help="end pressures at the hardness, or never (default: the scene's own, or where they reach it)",
-    )
-    add("--explain", action="store_true", help="print what the scene requires, without solving it")
-    add("--tolerance", metavar="T", type=float, help="for the certificate (default 1e-8; paper 1e-4)")
-    add(
-        "--budget",
-        action="store_true",
-        help="uncertainty budget and derivatives (under a load, a file with [tolerances] has it in any case)",
-    )
-    add("--strict", action="store_true", help="exit status 1 too where a number of the table is not usable")
-    add("--plot", metavar="FILE", type=output_file, help="maps and profiles (.png, .svg or .pdf)")
-    add("--vtk", metavar="FILE.vtu", type=output_file, help="both deformed surfaces, for ParaView")
-    add("--npz", metavar="FILE.npz", type=output_file, help="fields with coordinates and units, for numpy")
-    add("--netcdf", metavar="FILE.nc", type=output_file, help="the same as NetCDF, for xarray")
-    add("--patches", metavar="FILE.csv", type=output_file, help="table of contact patches as CSV")
-    add_json(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -161,12 +163,12 @@ def run(options: argparse.Namespace) -> int:
 def _read_scene(options: argparse.Namespace) -> Scene:
     """Return the scene, after whatever can be refused before it is solved."""
     import refimpl
-    from verification.cli import arrays, plot_style, vtk
+    from verification.cli.arrays import require_netcdf
 
     _refuse_ignored(options)
-    plot_style.check_suffix(options.plot)
-    vtk.check_suffix(options.vtk)
-    arrays.check(options.npz, options.netcdf)
+    for name, suffixes in SUFFIXES.items():
+        check_suffix(f"--{name}", getattr(options, name), suffixes)
+    require_netcdf(options.netcdf)
     scene = refimpl.read_scene(options.scene)
     if options.size is not None:
         scene = replace(scene, side=None, size=options.size)
@@ -202,15 +204,12 @@ def _solved(scene: Scene, options: argparse.Namespace, keywords: Mapping[str, An
     """Return the solution, with progress on a terminal; an interrupt shows the last finished grid."""
     import refimpl
 
-    line = StatusLine()
     try:
-        return refimpl.solve(scene, **keywords, progress=line.show)
+        with StatusLine() as line:
+            return refimpl.solve(scene, **keywords, progress=line.show)
     except KeyboardInterrupt as interrupt:
-        line.close()
         show_finished(interrupt, options.scene)
         raise
-    finally:
-        line.close()
 
 
 def _write_files(solution: Solution, scene: Scene, options: argparse.Namespace) -> None:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from verification.cli.output import columns, wrapped
+from verification.cli.output import columns, plain, wrapped
 
 if TYPE_CHECKING:
     from refimpl import Solution
@@ -123,16 +123,3 @@ def _change(effect: Mapping[str, float]) -> str:
 
 def _warned(warning: Mapping[str, object]) -> str:
     return wrapped(str(warning["text"]), f"warning ({warning['name']}): ")
-
-
-def plain(item: object) -> object:
-    """NaN and infinity, which JSON does not have, as None.
-
-    >>> plain({"a": [1.0, float("nan")]})
-    {'a': [1.0, None]}
-    """
-    if isinstance(item, Mapping):
-        return {key: plain(value) for key, value in item.items()}
-    if isinstance(item, list | tuple):
-        return [plain(value) for value in item]
-    return None if isinstance(item, float) and not math.isfinite(item) else item

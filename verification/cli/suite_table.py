@@ -30,14 +30,6 @@ _SPECIAL = {c: f"\\{c}" for c in "&%$#_{}"} | {
 Rows = Sequence[Sequence[str]]
 
 
-def require_suffix(path: Path) -> None:
-    """Raise `InputError` for a file that is no table that can be written."""
-    from refimpl.errors import InputError
-
-    if path.suffix not in SUFFIXES:
-        raise InputError("--table", str(path), f"a file name that ends in one of {', '.join(SUFFIXES)}")
-
-
 def run_entry(identity: Mapping[str, Any], suite: str, results: Iterable[Result]) -> dict[str, Any]:
     """Return the run as an entry like those of the published codes; designs are a row each."""
     from verification.adapters.table import summarised

@@ -8,15 +8,15 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli import ensemble
+from verification.cli.options import Options, Parsers, option, output_file, output_text, subcommand
 from verification.cli.output import (
-    Parsers,
-    add_json,
+    PICTURES,
+    StatusLine,
     check_outputs,
+    check_suffix,
     columns,
     emit,
-    output_file,
-    output_text,
+    plain,
     wrapped,
 )
 
@@ -33,7 +33,6 @@ EPILOG = """examples:
   rough-friction sweep study.toml --parquet study.parquet
   rough-friction sweep study.toml --scheduler tcp://127.0.0.1:8786 --csv study.csv
   rough-friction sweep study.toml --plot mu.svg --x load --by lower_rms
-  rough-friction sweep ensemble.toml --target-error 0.5%
 
 A study is a TOML file, or the name of a shipped one. Killed at any moment, the same command goes on
 where it was; runs that the store has are not done again. Exit status 1 when a run failed, and its
@@ -52,52 +51,33 @@ message is shown, or did not converge: then its row says so by its status.
   "lower.surface[0].lay" = [0.0, 0.7854]
   [solve]                     # optional: method, oblique, slope_correction, tolerance,
                               #   accuracy and quantity (chosen grids; then no grid in [vary])
-
-With --target-error the study is an ensemble that varies the grid alone, each grid twice the one
-before, and states no realisations: they are as many as it takes. By multilevel Monte Carlo it finds
-mean mu and A on the finest grid, each with a standard error of at most that share. A pilot says
-from which grid on the sum is cheapest; from the finest it is plain sampling. Where a realisation
-does not converge, there is no mean: without it the mean would be that of the easier surfaces.
 """
+
+OPTIONS: Options = {
+    "study": option("a study's TOML file, or the name of a shipped study", metavar="STUDY"),
+    "--store": option("default: the study's name, .sqlite, here", metavar="FILE.sqlite", type=output_file),
+    "--workers": option("worker processes (default 2)", metavar="N", type=int, default=2),
+    "--scheduler": option("use the workers of this dask.distributed scheduler instead", metavar="ADDRESS"),
+    "--csv": option("export the study's rows as CSV ('-': to stdout)", metavar="FILE", type=output_text),
+    "--parquet": option("export the study's rows as Parquet", metavar="FILE", type=output_file),
+    "--plot": option("curves as a picture (.png, .svg or .pdf)", metavar="FILE", type=output_file),
+    "--x": option("with --plot: the column along x (default: what varies)", metavar="COLUMN"),
+    "--y": option("with --plot: the column along y (default friction_coefficient)", metavar="COLUMN"),
+    "--by": option("with --plot: the column that tells curves apart", metavar="COLUMN"),
+}
 
 
 def add_parser(commands: Parsers) -> None:
     """Declare the subcommand."""
-    parser = commands.add_parser(
+    subcommand(
+        commands,
         "sweep",
+        run,
+        OPTIONS,
         help="solve the runs of a study: realisations x roughness x load x direction x grid",
         description="Solve the runs of a study in worker processes, resumably, and export the table.",
         epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    add = parser.add_argument
-    add("study", metavar="STUDY", help="a study's TOML file, or the name of a shipped study")
-    add(
-        "--store",
-        metavar="FILE.sqlite",
-        type=output_file,
-        help="default: the study's name, .sqlite, here",
-    )
-    add("--workers", metavar="N", type=int, default=2, help="worker processes (default 2)")
-    add(
-        "--scheduler",
-        metavar="ADDRESS",
-        help="use the workers of this dask.distributed scheduler instead",
-    )
-    add("--csv", metavar="FILE", type=output_text, help="export the study's rows as CSV ('-': to stdout)")
-    add("--parquet", metavar="FILE", type=output_file, help="export the study's rows as Parquet")
-    add("--plot", metavar="FILE", type=output_file, help="curves as a picture (.png, .svg or .pdf)")
-    add("--x", metavar="COLUMN", help="with --plot: the column along x (default: what varies)")
-    add("--y", metavar="COLUMN", help="with --plot: the column along y (default friction_coefficient)")
-    add("--by", metavar="COLUMN", help="with --plot: the column that tells curves apart")
-    add(
-        "--target-error",
-        metavar="SHARE",
-        type=_share,
-        help="solve as many realisations as this relative standard error of mean mu and A takes (0.5%%)",
-    )
-    add_json(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -121,23 +101,18 @@ def run(options: argparse.Namespace) -> int:
         posable.check_memory(study)
     for note in study.notes:
         print(f"rough-friction sweep: {note}", file=sys.stderr)
-    line, where = _Line(), {"workers": options.workers, "scheduler": options.scheduler}
+    line = _Line()
     try:
-        if options.target_error is not None:
-            found = ensemble.found(options, study, store, **where, tick=line.show)
-        else:
-            done = engine.sweep(study, store, **where, tick=line.show)
+        with line:
+            done = engine.sweep(
+                study, store, workers=options.workers, scheduler=options.scheduler, tick=line.count
+            )
     except KeyboardInterrupt:
-        line.close()
         print(f"rough-friction sweep: {line.interrupted(store)}", file=sys.stderr)
         raise
     except engine.WorkersLost as lost:
         print(f"rough-friction sweep: {lost}", file=sys.stderr)
         return 1
-    finally:
-        line.close()
-    if options.target_error is not None:
-        return ensemble.reported(options, found)
     _export(options, done, store)
     return 1 if done.failures or done.unconverged else 0
 
@@ -145,14 +120,13 @@ def run(options: argparse.Namespace) -> int:
 def check_plot(options: argparse.Namespace, study: Study) -> None:
     """Choose the columns of the picture; refuse, before any run, what names none or has no picture."""
     from refimpl.errors import InputError
-    from verification.cli.plot_style import check_suffix
     from verification.sweep.run import COORDINATES, OUTCOMES
 
-    check_suffix(options.plot)
+    check_suffix("--plot", options.plot, PICTURES)
     given = {name: getattr(options, name) for name in ("x", "y", "by") if getattr(options, name)}
-    if options.plot is None or options.target_error is not None:
-        for name, value in (given | ({"plot": str(options.plot)} if options.plot else {})).items():
-            raise InputError(f"--{name}", value, "none without --plot, or with --target-error")
+    if options.plot is None:
+        for name, value in given.items():
+            raise InputError(f"--{name}", value, "none without --plot")
         return
     known = (*COORDINATES, *OUTCOMES, *study.own_axes)
     for name, value in given.items():
@@ -170,11 +144,11 @@ def _check_suffixes(**written: Path | None) -> None:
     """Refuse a file whose name says that it is what another option writes."""
     from refimpl.errors import InputError
 
-    for option, path in written.items():
+    for name, path in written.items():
         for other, suffix in SUFFIXES.items():
-            if path is not None and other != option and path.suffix.lower() == suffix:
+            if path is not None and other != name and path.suffix.lower() == suffix:
                 allowed = f"no name that ends in {suffix}, as that of --{other} does"
-                raise InputError(f"--{option}", str(path), allowed)
+                raise InputError(f"--{name}", str(path), allowed)
 
 
 def _export(options: argparse.Namespace, done: Sweep, store: Path) -> None:
@@ -191,28 +165,15 @@ def _export(options: argparse.Namespace, done: Sweep, store: Path) -> None:
     if options.parquet is not None:
         export.write_parquet(done.table(), options.parquet)
     if options.plot is not None and done.rows:
-        from verification.cli import plot_sweep
+        from verification.cli.plot_curves import draw_sweep
         from verification.sweep.curves import curves
 
         found = curves(done.rows, options.x, options.y, options.by)
-        plot_sweep.draw(found, options.x, options.y, options.by, options.plot)
+        draw_sweep(found, options.x, options.y, options.by, options.plot)
     emit(_document(done, store), options.json, table)
 
 
-def _share(text: str) -> float:
-    """A share from text: 0.5% or 0.005.
-
-    >>> _share("0.5%"), _share("0.01")
-    (0.005, 0.01)
-    """
-    try:
-        return float(text[:-1]) / 100 if text.endswith("%") else float(text)
-    except ValueError as alien:
-        raise argparse.ArgumentTypeError(f"{text!r} is no share like 0.5% or 0.005") from alien
-
-
 def _document(done: Sweep, store: Path) -> dict[str, object]:
-    from verification.cli.solve_table import plain
     from verification.framework.provenance import provenance
 
     return {
@@ -270,21 +231,16 @@ def _quality(rows: list[Row]) -> list[str]:
     return parts
 
 
-class _Line:
-    """One progress line on stderr, rewritten; nothing at all when stderr is no terminal."""
+class _Line(StatusLine):
+    """Progress of a sweep, and where an interrupted one goes on."""
 
-    def __init__(self) -> None:
-        self._shown = sys.stderr.isatty()
-        self._last: Progress | None = None
+    _last: Progress | None = None
 
-    def show(self, progress: Progress) -> None:
-        """Rewrite the line."""
+    def count(self, progress: Progress) -> None:
+        """Show how many runs are done."""
         self._last = progress
-        if self._shown:
-            failed = f", {progress.failed} failed" if progress.failed else ""
-            text = f"[{progress.done}/{progress.total}]{failed} {time_left(progress.seconds_left)}"
-            sys.stderr.write(f"\r\x1b[K{text}")
-            sys.stderr.flush()
+        failed = f", {progress.failed} failed" if progress.failed else ""
+        self.show(f"[{progress.done}/{progress.total}]{failed} {time_left(progress.seconds_left)}")
 
     def interrupted(self, store: Path) -> str:
         """Return what is done and how it goes on."""
@@ -295,11 +251,6 @@ class _Line:
             f"interrupted: {self._last.done} of {self._last.total} runs are kept in {store}; "
             f"the same command resumes{f', {left}' if left else ''}"
         )
-
-    def close(self) -> None:
-        """Clear the line."""
-        if self._shown:
-            sys.stderr.write("\r\x1b[K")
 
 
 def time_left(seconds: float | None) -> str:

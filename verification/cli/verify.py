@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from verification.cli import contestant, export
-from verification.cli.output import Parsers, add_json, columns, emit, judgement
+from verification.cli.options import Options, Parsers, option, subcommand
+from verification.cli.output import columns, emit, judgement, select_or_refuse
 
 if TYPE_CHECKING:
     from verification.framework.runner import Run
@@ -19,38 +21,36 @@ EPILOG = """examples:
   rough-friction verify --exec './my-solver --quiet' --able aperiodic,load --largest 32
   rough-friction verify --self-test
   rough-friction verify --export reference-data
-  rough-friction verify --stale
 """
 SELF_TEST = "contestants/*"
 """The cases that run the suite for other solvers on our own, and on broken ones."""
 
+OPTIONS: Options = {
+    "--tier": option("full includes the quick cases", choices=("quick", "full"), default="quick"),
+    "--only": option("only these; may be repeated", metavar="ID-GLOB", action="append", default=[]),
+    "--jobs": option("worker processes (default 2)", metavar="N", type=int, default=2),
+    "--list": option("list the selected cases and run nothing", action="store_true"),
+    "--export": option(
+        "run no case; write the problems of the suite for other solvers (of the cases that --only\n"
+        "selects, up to 64 elements a side) with certified pressures and proven bounds",
+        metavar="DIR",
+        type=Path,
+    ),
+}
+
 
 def add_parser(commands: Parsers) -> None:
     """Declare the subcommand."""
-    parser = commands.add_parser(
+    parser = subcommand(
+        commands,
         "verify",
+        run,
+        OPTIONS,
         help="run the verification cases",
         description="Run the verification cases. A case that could not run is never a pass.",
         epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument(
-        "--tier", choices=("quick", "full"), default="quick", help="full includes the quick cases"
-    )
-    parser.add_argument(
-        "--only", metavar="ID-GLOB", action="append", default=[], help="only these; may be repeated"
-    )
-    parser.add_argument("--jobs", metavar="N", type=int, default=2, help="worker processes (default 2)")
-    parser.add_argument("--list", action="store_true", help="list the selected cases and run nothing")
-    parser.add_argument(
-        "--stale",
-        action="store_true",
-        help="run nothing; list the committed results, and which are older than the code that they judge",
-    )
-    export.add_options(parser)
     contestant.add_options(parser)
-    add_json(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -59,10 +59,6 @@ def run(options: argparse.Namespace) -> int:
     from verification.framework import registry, runner
     from verification.framework.case import Tier
 
-    if options.stale:
-        from verification.cli import stale
-
-        return stale.run(options)
     if options.jobs < 1:
         raise InputError("--jobs", options.jobs, "at least one worker process")
     if options.export is not None:
@@ -73,10 +69,8 @@ def run(options: argparse.Namespace) -> int:
         return contestant.run(options)
     if options.self_test:
         options.tier, options.only = "full", options.only or [SELF_TEST]
-    try:
-        chosen = registry.select(registry.load(), Tier(options.tier), options.only)
-    except LookupError as nothing:
-        raise InputError("--only", options.only, f"the id of a case ({nothing}; see --list)") from nothing
+    tier, only = Tier(options.tier), options.only
+    chosen = select_or_refuse(only, lambda: registry.select(registry.load(), tier, only))
     if options.list:
         document = [{"id": c.id, "tier": c.tier.value, "title": c.title} for c in chosen]
         emit(document, options.json, columns([[c.id, c.tier.value, c.title] for c in chosen], indent=""))

@@ -8,16 +8,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from refimpl import Solution
 
-SUFFIXES = (".vtk", ".vtu")
-
-
-def check_suffix(path: Path | None) -> None:
-    """Refuse, before any work, a file name whose suffix names no format. Raises InputError."""
-    from refimpl.errors import InputError
-
-    if path is not None and path.suffix not in SUFFIXES:
-        raise InputError("--vtk", str(path), f"a file name that ends in {' or '.join(SUFFIXES)}")
-
 
 def write(solution: Solution, path: Path) -> None:
     """Write the lower surface and, as a second sheet, the upper one.

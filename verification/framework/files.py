@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import glob
 import json
 import os
@@ -13,6 +12,8 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+
+from filelock import FileLock
 
 import reports.result_files
 
@@ -59,26 +60,21 @@ def _temporary(path: Path) -> Iterator[str]:
     """The name of a new file beside the path, locked while it is written and gone afterwards."""
     prefix = f".{path.name[:_SHOWN]}."
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=prefix, suffix=path.suffix)
+    os.close(handle)
     try:
-        fcntl.flock(handle, fcntl.LOCK_EX)
-        _remove_left(path, prefix)
-        yield name
+        with FileLock(name):
+            _remove_left(path, prefix)
+            yield name
     finally:
         with suppress(FileNotFoundError):  # it is at its place
             os.unlink(name)
-        os.close(handle)
 
 
 def _remove_left(path: Path, prefix: str) -> None:
     """Remove temporary files of the path whose writers are gone: nobody locks them."""
     for left in path.parent.glob(f"{glob.escape(prefix)}????????{glob.escape(path.suffix)}"):
-        with suppress(OSError):
-            handle = os.open(left, os.O_RDONLY | os.O_NOFOLLOW)
-            try:
-                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                os.unlink(left)
-            finally:
-                os.close(handle)
+        with suppress(OSError), FileLock(left, timeout=0):
+            os.unlink(left)
 
 
 def _mode(path: Path) -> int:

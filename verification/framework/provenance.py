@@ -1,9 +1,8 @@
-"""Provenance of a result: versions, commit, digests of the code, machine, date and command."""
+"""Provenance of a result: versions, commit, machine, date and command."""
 
 from __future__ import annotations
 
 import datetime
-import hashlib
 import os
 import platform
 import shlex
@@ -13,8 +12,6 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-SOURCES = ("refimpl", "appendix_a", "verification", "tests")
-"""Folders whose files results depend on; an installed package has no tests."""
 DISTRIBUTION = "rough-friction"
 PACKAGES = ("numpy", "scipy", "ducc0", "scikit-fem", "meshio", "mpmath", "python-flint", "SurfaceTopography",
             "matplotlib", "hypothesis", "pytest")  # fmt: skip
@@ -45,23 +42,6 @@ def revision() -> dict[str, str | bool | None]:
     }
 
 
-def sources() -> dict[str, str]:
-    """Digest of the files in each folder of code, those two levels deep with all below them.
-
-    The contents count, comments too; the names of files do not. `verification.cli.stale` compares them.
-    """
-    contents: dict[str, list[str]] = {}
-    for top in SOURCES if _is_checkout() else SOURCES[:-1]:
-        for path in (ROOT / top).rglob("*"):
-            if path.is_file() and "__pycache__" not in path.parts:
-                folder = "/".join(path.relative_to(ROOT).parent.parts[:2])
-                contents.setdefault(folder, []).append(hashlib.sha256(path.read_bytes()).hexdigest())
-    return {
-        folder: hashlib.sha256("".join(sorted(contents[folder])).encode()).hexdigest()[:10]
-        for folder in sorted(contents)
-    }
-
-
 def machine() -> dict[str, str | int | None]:
     """Processor model, cores this process may use, and platform."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
@@ -87,7 +67,6 @@ def provenance() -> dict[str, object]:
         "command": command(),
         "date": now,
         **revision(),
-        "sources": sources(),
         "versions": versions(),
         "machine": machine(),
     }

@@ -1,8 +1,8 @@
 """Results kept in one SQLite file: a row per finished run, written at once or not at all.
 
 The journal is a write-ahead log, so that a run is either in the table or not after a kill at any moment, and
-others may read while a sweep writes. A second sweep is refused by a lock on the database file itself, which
-links to it share, and which the system releases when the holder dies, however it dies.
+others may read while a sweep writes. A second sweep is refused by a lock file beside the store, the same for
+all links to it, which the system releases when the holder dies, however it dies.
 
 Damage is found before it is used: on opening, the file's structure, its schema and the checksum of every row
 are compared with what this module writes.
@@ -10,17 +10,18 @@ are compared with what this module writes.
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import json
 import math
 import os
 import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
+
+from filelock import FileLock, Timeout
 
 from refimpl.errors import InputError
 from verification.sweep.run import COORDINATES, OUTCOMES, Row, Run
@@ -49,8 +50,8 @@ class Store:
     path.
     """
 
-    def __init__(self, connection: sqlite3.Connection, path: Path, lock: int) -> None:
-        self._connection, self._path, self._lock = connection, path, lock
+    def __init__(self, connection: sqlite3.Connection, path: Path) -> None:
+        self._connection, self._path, self._opened = connection, path, os.stat(path)
 
     def keys(self) -> set[str]:
         """Keys of the finished runs."""
@@ -76,13 +77,12 @@ class Store:
             yield found["seconds"]
 
     def check_place(self) -> None:
-        """Raise InputError unless the locked file is still the one at the path."""
-        held = os.fstat(self._lock)
+        """Raise InputError unless the opened file is still the one at the path."""
         try:
             there = os.stat(self._path)
         except OSError:
             there = None
-        if there is None or (there.st_dev, there.st_ino) != (held.st_dev, held.st_ino):
+        if there is None or not os.path.samestat(there, self._opened):
             found = "deleted" if there is None else "replaced"
             raise InputError("store", str(self._path), f"a file that stays: it was {found} during the sweep")
 
@@ -123,8 +123,8 @@ def _is_nan(value: object) -> bool:
 
 
 def files_of(store: Path) -> tuple[Path, ...]:
-    """The store, and what SQLite keeps beside it."""
-    return tuple(store.with_name(store.name + end) for end in ("", "-wal", "-shm", "-journal"))
+    """The store, its lock, and what SQLite keeps beside it."""
+    return tuple(store.with_name(store.name + end) for end in ("", ".lock", "-wal", "-shm", "-journal"))
 
 
 @contextmanager
@@ -136,11 +136,11 @@ def open_store(path: Path) -> Iterator[Store]:
     written. Other faults of the block are raised as they are.
     """
     path = Path(os.path.realpath(path))
-    with _locked(path) as (lock, is_new):
+    with _locked(path) as is_new:
         kept = not is_new
         try:
             with closing(_connect(path)) as connection:
-                store = Store(connection, path, lock)
+                store = Store(connection, path)
                 try:
                     yield store
                     store.check_place()
@@ -158,26 +158,29 @@ def open_store(path: Path) -> Iterator[Store]:
 
 
 @contextmanager
-def _locked(path: Path) -> Iterator[tuple[int, bool]]:
-    """The locked file at the path and whether it was made for this."""
+def _locked(path: Path) -> Iterator[bool]:
+    """Lock the store at the path, and yield whether it was made for this."""
     is_new = not os.path.exists(path)  # no error for long names
     for file in files_of(path):
         if os.path.exists(file) and not os.path.isfile(file):
             raise InputError("store", str(file), "a regular file")
+    lock = FileLock(f"{path}.lock", timeout=0)
     try:
-        lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NONBLOCK, 0o666)
+        os.close(os.open(path, os.O_RDWR | os.O_CREAT | os.O_NONBLOCK, 0o666))
+        if (names := os.stat(path).st_nlink) > 1:
+            several = f"{path} of {names} names (hard links)"
+            raise InputError("store", several, "one name: SQLite keeps its log beside it")
+        lock.acquire()
+    except Timeout as held:
+        raise InputError("store", str(path), "a file that no other sweep is using now") from held
     except OSError as refused:
         raise InputError("store", str(path), f"a file that can be written ({refused.strerror})") from refused
     try:
-        if os.fstat(lock).st_nlink > 1:
-            names = f"{os.fstat(lock).st_nlink} names (hard links)"
-            raise InputError("store", f"{path} of {names}", "one name: SQLite keeps its log beside it")
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        yield lock, is_new
-    except BlockingIOError as held:
-        raise InputError("store", str(path), "a file that no other sweep is using now") from held
+        yield is_new
     finally:
-        os.close(lock)
+        with suppress(OSError):
+            os.unlink(lock.lock_file)  # before its release: who has opened it meanwhile finds it gone
+        lock.release()
 
 
 def _connect(path: Path) -> sqlite3.Connection:

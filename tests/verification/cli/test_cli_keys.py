@@ -99,3 +99,4 @@ def test_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert [key["unit"] for key in document["friction"] if key["name"] == "tau"] == ["Pa"]
     assert main(["keys", "--markdown", "-"]) == 0
     assert capsys.readouterr().out == page()
+    assert all(f"| `{key.name}` |" in page() for table in TABLES.values() for key in table)

@@ -24,7 +24,7 @@ from refimpl.surfaces.inspection import PARAMETERS
 from tests.refimpl.surfaces.instrument_writers import MAP, write_plu, write_txt
 from tests.verification.cli.commands import answer, shown
 from verification.cli import identify, identify_store, inspect, plot_surface
-from verification.cli.plot_identify import _fit
+from verification.cli.plot_curves import _fit
 
 ROWS = "load,mu,u_mu\n5,0.4103,0.0082\n11,0.3337,0.0066\n24,0.2788,0.0055\n54,0.2253,0.0046\n"
 FIT = "identify table1-smooth data.csv --grid 48"

@@ -22,7 +22,7 @@ import pytest
 from refimpl.solvers.production.projected_cg import ProjectedCG
 from tests.verification.cli.children import LONG, Ended, forked, one_line, started
 from tests.verification.cli.commands import run
-from verification.cli import main, plot_style
+from verification.cli import main, solve
 from verification.framework import files
 
 START = (
@@ -147,7 +147,7 @@ def test_a_folder_that_refuses(
     def turns(*_: object, **__: object) -> None:  # read-only once the solve has begun
         monkeypatch.setattr(files.tempfile, "mkstemp", refuses)
 
-    monkeypatch.setattr(plot_style, "check_suffix", turns)
+    monkeypatch.setattr(solve, "check_suffix", turns)
     late = run(f"solve hertz --grid 8 --json {tmp_path}/s.json")
     assert (late.status, late.err.count("\n")) == (1, 1)
     assert "Read-only" in late.err

@@ -16,10 +16,18 @@ import refimpl as rf
 from refimpl.grid import Array
 from tests.verification.cli.commands import run
 from verification.cli import plot
-from verification.cli.plot_maps import domain_map, gap_map, pressure_map, shear_map
-from verification.cli.plot_profiles import gap_histogram, pressure_histogram, profile
+from verification.cli.plot import gap_histogram, pressure_histogram, profile
+from verification.cli.plot_maps import (
+    View,
+    domain_map,
+    gap_map,
+    peak_of,
+    pooled,
+    pressure_map,
+    shear_map,
+    view_of,
+)
 from verification.cli.plot_style import PRESSURES, unit_at_scale
-from verification.cli.plot_view import View, peak_of, pooled, view_of
 
 STEEL, SOFT = rf.Material(E=200e9, nu=0.3), rf.Material(E=3e9, nu=0.38)
 

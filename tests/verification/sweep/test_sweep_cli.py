@@ -126,7 +126,7 @@ def test_a_grid_that_is_too_coarse_is_reported() -> None:
 def test_progress_is_for_terminals(terminal: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stderr", Stream(terminal))
     line = _Line()
-    line.show(Progress(3, 10, 1, 125.0))
+    line.count(Progress(3, 10, 1, 125.0))
     line.close()
     written = sys.stderr.getvalue()
     assert ("[3/10], 1 failed 2 min left" in written) if terminal else written == ""

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.solution.limits import Limit, ModelWarning
-from verification.cli import plot_sweep
+from verification.cli import plot_curves
 from verification.sweep import export, run
 from verification.sweep.curves import Point, curves
 from verification.sweep.export import EXPORTED, header, to_csv, unit_of, write_csv, write_parquet
@@ -227,7 +227,7 @@ def test_means_bars_and_bands_are_in_the_units_of_the_axes(
     drawn: list[Figure] = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
     points = [Point(1e-6, 2e-6, 0.5e-6, 0.25e-6, 3), Point(4e-6, 3e-6, 0.5e-6, math.inf, 3)]
-    plot_sweep.draw({14.0: points}, "lower_rms", "contact_area", "load", tmp_path / "a.png")
+    plot_curves.draw_sweep({14.0: points}, "lower_rms", "contact_area", "load", tmp_path / "a.png")
     (axes,) = drawn[0].axes
     line, _, (bars,) = axes.containers[0]
     assert line.get_xydata().tolist() == [pytest.approx([1, 2]), pytest.approx([4, 3])]
@@ -236,7 +236,7 @@ def test_means_bars_and_bands_are_in_the_units_of_the_axes(
     assert (band[:, 1].min(), band[:, 1].max()) == (pytest.approx(1.5), pytest.approx(3.5))
     assert axes.get_legend().get_texts()[0].get_text() == "load = 14 N"
     assert "1 error bars unbounded" in axes.get_title(loc="left")
-    assert plot_sweep.label("sliding_offset") == "sliding distance (µm)"
+    assert plot_curves.label("sliding_offset") == "sliding distance (µm)"
 
 
 @pytest.mark.parametrize(
@@ -251,14 +251,14 @@ def test_means_bars_and_bands_are_in_the_units_of_the_axes(
     ],
 )
 def test_a_legend_has_the_units_of_the_axes(by: str | None, value: object, entry: str | None) -> None:
-    assert plot_sweep._entry(by, value) == entry
+    assert plot_curves._entry(by, value) == entry
 
 
 def test_logarithmic_axes_have_plain_numbers() -> None:
     axes = Figure().subplots()
     axes.plot([5.0, 20.0, 70.0], [1.0, 2.0, 3.0])
     axes.set_xscale("log")
-    plot_sweep._plain_decades(axes.xaxis)
+    plot_curves._plain_decades(axes.xaxis)
     low, high = axes.get_xlim()
     shown = [axes.xaxis.get_major_formatter()(x) for x in axes.get_xticks() if low <= x <= high]
     assert shown == ["5", "10", "20", "50"]

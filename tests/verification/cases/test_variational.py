@@ -1,0 +1,155 @@
+"""Cases of Table 2: energy and minimisers against enumeration, timing, and what the cases notice."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.grid import Array, Mask
+from refimpl.solvers.paper import _Scheme
+from verification.cases.paper import iterations, scheme
+from verification.cases.solvers import variational
+from verification.cases.solvers.variational import (
+    MINIMISERS,
+    PRINTED_HOURS,
+    Contact,
+    Energy,
+    approach_under_load,
+    growth,
+    table2_scene,
+    timed,
+)
+from verification.framework.case import Status
+from verification.framework.registry import find
+from verification.scenes.cross_checks import Trial, pressed
+
+APPROACH = 1.6e-6  # m
+
+
+def by_enumeration(A: np.ndarray, depth: np.ndarray) -> np.ndarray:
+    """The complementary solution among all supports: no solver, only linear algebra and signs."""
+    n = len(depth)
+    for chosen in itertools.product((False, True), repeat=n):
+        loaded = np.array(chosen)
+        x = np.zeros(n)
+        x[loaded] = np.linalg.solve(A[np.ix_(loaded, loaded)], depth[loaded])
+        if np.all(x >= 0) and np.all(A @ x >= depth - 1e-12):
+            return x
+    raise AssertionError("no support is complementary")
+
+
+@pytest.mark.parametrize(
+    ("name", "tolerance"), [("NNLS", 1e-13), ("L-BFGS-B", 1e-5), ("interior point", 1e-10)]
+)
+def test_minimisers_against_enumeration(name: str, tolerance: float) -> None:
+    """Tolerances as in the cases, with fewer unknowns."""
+    small = Energy.on(5, APPROACH)
+    assert 5 < len(small.depth) < 16
+    exact = by_enumeration(small.matrix(), small.depth)
+    assert 0 < np.count_nonzero(exact) < len(exact)
+    assert np.abs(MINIMISERS[name](small) - exact).max() <= tolerance * exact.max()
+
+
+def test_matrix_and_product_are_one_operator() -> None:
+    energy = Energy.on(12, APPROACH)
+    x = np.random.default_rng(1).standard_normal(len(energy.depth))
+    A = energy.matrix()
+    assert np.array_equal(A, A.T)
+    assert np.allclose(A @ x, energy.apply(x), rtol=0, atol=1e-13 * np.abs(A @ x).max())
+    # sum of centre coefficients: I[1/rho] of a unit square at its centre is 4 asinh(1)
+    assert A[0, 0] == pytest.approx(4 * np.arcsinh(1.0), rel=1e-14)
+
+
+def test_no_element_outside_the_interference_is_loaded() -> None:
+    """Restricting the unknowns loses nothing: with all elements as unknowns the minimum is the same."""
+    energy = Energy.on(12, APPROACH)
+    everywhere = Energy(energy.problem, APPROACH)
+    everywhere.__dict__["interference"] = np.ones_like(energy.interference)
+    assert len(everywhere.depth) == 144 > len(energy.depth)
+    whole, part = (e.pressure(MINIMISERS["NNLS"](e)) for e in (everywhere, energy))
+    assert np.abs(whole - part).max() <= 1e-12 * whole.max()
+
+
+def test_load_constraint_finds_the_approach() -> None:
+    reference = rf.solve(table2_scene(), grid=16, method="dense", oblique=False)
+    for assumed in (1.05, 1.5):
+        found = approach_under_load(Energy.on(16, assumed * reference.approach), load=70.0)
+        assert found == pytest.approx(reference.approach, rel=1e-8)
+
+
+def test_an_interior_point_that_does_not_end_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(variational, "_INTERIOR_STEPS", 3)
+    with pytest.raises(RuntimeError, match="does not end in 3 steps"):
+        MINIMISERS["interior point"](Energy.on(5, APPROACH))
+
+
+@pytest.fixture
+def small_table(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.setattr(variational, "DENSE_GRIDS", (8, 12))
+    monkeypatch.setattr(variational, "FFT_GRIDS", (8, 12, 16))
+    variational.table2.cache_clear()
+    yield
+    variational.table2.cache_clear()
+
+
+@pytest.mark.usefixtures("small_table")
+def test_methods_with_the_matrix_stop_early_and_the_table_is_recorded() -> None:
+    found = variational.table2_growth()
+    for name, grids in (("paper", [8, 12, 16]), ("L-BFGS-B", [8, 12, 16]), ("NNLS", [8, 12])):
+        assert found.data[f"{name}: M"] == grids
+        assert len(np.array(found.data[f"{name}: s"])) == len(grids)
+    assert found.data["printed variational: exponent on the shared grids"] == pytest.approx(
+        np.log(96) / np.log(2.56**2)  # 1 h at 100, 4 days at 256
+    )
+    assert growth(PRINTED_HOURS["paper"]) == pytest.approx(np.log(103) / np.log(2.56**2))
+
+
+@pytest.mark.usefixtures("small_table")
+def test_a_fast_wrong_answer_has_no_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    solve = Contact.solve
+    monkeypatch.setattr(
+        Contact,
+        "solve",
+        lambda self, method: (
+            (1.01 * solve(self, method)[0], 1.0) if method == "NNLS" else solve(self, method)
+        ),
+    )
+    with pytest.raises(RuntimeError, match="NNLS on 8 x 8: off by 1"):
+        variational.table2()
+
+
+def test_short_calls_are_averaged(monkeypatch: pytest.MonkeyPatch) -> None:
+    contact = Contact.on(8)
+    calls: list[str] = []
+
+    def solve(self: Contact, method: str) -> tuple[Array, float]:
+        calls.append(str(sum(range(100_000))))
+        return contact.pressure, 0.0
+
+    monkeypatch.setattr(Contact, "solve", solve)
+    _, seconds = timed(contact, "paper")
+    assert len(calls) > 1
+    assert seconds * len(calls) >= 0.2
+
+
+def test_load_share_is_the_change_of_the_production_state() -> None:
+    one_element = pressed(rms=2e-6, load=1e-4, friction=rf.Friction())  # its pressure is the load
+    trial = Trial("", "", one_element, 17, {"oblique": False})
+    assert scheme.load_share(trial) == pytest.approx(1e-4, rel=1e-9)
+    assert scheme.load_share(scheme.trials()["approach"]) == 0.0
+
+
+def test_trace_case_sees_an_uncorrected_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the residual correction switched off the case fails."""
+    iterate = _Scheme._iterate
+
+    def uncorrected(self: _Scheme, u: Array, inside: Mask, *, on_circle: bool) -> Mask:
+        return iterate(self, u, inside, on_circle=True)
+
+    monkeypatch.setattr(_Scheme, "_iterate", uncorrected)
+    monkeypatch.setattr(iterations, "SCENES", ("hertz",))
+    assert find("paper/periodicity-error").run().status == Status.FAIL

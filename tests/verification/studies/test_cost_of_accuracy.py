@@ -1,0 +1,97 @@
+"""Cost of an accuracy: the table by class of scene, and `rough-friction tradeoff` for one scene."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from importlib import resources
+from pathlib import Path
+
+import pytest
+
+import refimpl as rf
+from reports.result_files import read_result
+from reports.studies.accuracy_costs import build
+from verification.benchmarks import cost_of_accuracy
+from verification.benchmarks.cost_of_accuracy import LOWER, class_scene, costs, solve_grids
+from verification.cli import main
+
+QUANTITIES = {"friction_coefficient", "contact_area", "max_pressure"}
+SHIPPED = sorted(
+    path.name.removesuffix(".toml") for path in (resources.files("refimpl") / "data/scenes").iterdir()
+)
+
+
+@pytest.mark.parametrize("scene", SHIPPED)
+def test_every_shipped_scene_has_a_table(
+    scene: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Without friction mu is zero and has no relative error."""
+    out = tmp_path / "t.json"
+    assert main(["tradeoff", scene, "--grids", "12,8", "--reference", "48", "--json", str(out)]) == 0
+    found, printed = json.loads(out.read_text()), capsys.readouterr().out
+    quantities = QUANTITIES - ({"friction_coefficient"} if scene == "hertz" else set())
+    assert [row["M"] for row in found["grids"]] == [8, 12, 24]  # half the reference's too
+    assert all(set(row["errors"]) == quantities for row in found["grids"])
+    assert {row["quantity"] for row in found["prices"]} == quantities
+    assert all(name in printed for name in quantities)
+
+
+def test_a_class_costs_the_median_of_its_realisations() -> None:
+    def grids(seconds: float, error: float) -> list[dict[str, object]]:
+        row = {"M": 32, "transforms of 256": 2 * seconds, "seconds": seconds}
+        return [{**row, "errors": {"contact_area": error}}]
+
+    rows = costs([grids(1.0, 0.02), grids(5.0, 0.02), grids(3.0, 0.005)])
+    assert [row["seconds"] for row in rows] == [3.0, 3.0, None, None]  # errors of 10, 3, 1 and 0.3 %
+
+
+def test_an_unsettled_grid_meets_no_demand_and_an_unsettled_reference_judges_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solve = rf.solve
+
+    def stagnates(at: int) -> None:
+        def solved(scene: rf.Scene, grid: int) -> rf.Solution:
+            status = {at: rf.Status.STAGNATED}.get(grid, rf.Status.CONVERGED)
+            return replace(solve(scene, grid), status=status)
+
+        monkeypatch.setattr(cost_of_accuracy.rf, "solve", solved)
+
+    stagnates(16)
+    coarse, fine = solve_grids(rf.read_scene("hertz"), [8, 16], 32)
+    assert coarse["errors"]["contact_area"] < float("inf") == fine["errors"]["contact_area"]
+    assert costs([[coarse, fine]])[0]["M"] is None
+    stagnates(32)
+    out = tmp_path / "t.json"
+    assert main(["tradeoff", "hertz", "--grids", "8", "--reference", "32", "--json", str(out)]) == 1
+    assert "the reference on 32 elements a side ends in 'stagnated'" in capsys.readouterr().err
+    assert not out.exists()
+
+
+@pytest.mark.parametrize(("reference", "status"), [("30", 2), ("31", 2), ("32", 0), ("34", 0), ("33", 2)])
+def test_a_reference_is_even_and_twice_as_fine(reference: str, status: int) -> None:
+    assert main(["tradeoff", "hertz", "--grids", "16,8", "--reference", reference]) == status
+
+
+def test_grids_are_numbers(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        main(["tradeoff", "hertz", "--grids", "8,x"])
+    assert "'8,x' is no list of grids" in capsys.readouterr().err
+
+
+def test_the_command_makes_the_committed_document(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cost_of_accuracy, "solve_grids", lambda scene: solve_grids(scene, (16, 24), 32))
+    monkeypatch.setattr(cost_of_accuracy, "SEEDS", (1,))
+    cost_of_accuracy.main(["--json", str(tmp_path / "costs.json")])
+    made = read_result(tmp_path / "costs.json")
+    committed = read_result(Path(__file__).parents[3] / "reports" / "results" / "accuracy_costs.json")
+    assert [one["class"] for one in made["classes"]] == [one["class"] for one in committed["classes"]]
+    assert made["classes"][0]["prices"][0].keys() == committed["classes"][0]["prices"][0].keys()
+    (table,) = build(made).tables
+    assert len(table.rows) == 3 * len(LOWER)
+
+
+def test_seeds_of_the_smooth_ball_shift_the_grid() -> None:
+    first, second = (class_scene("smooth ball", seed) for seed in (1, 2))
+    assert second.lengths[0] - first.lengths[0] == pytest.approx(first.lengths[0] / 32 / 3)
