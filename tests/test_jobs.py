@@ -168,6 +168,7 @@ def test_a_yield_study(job: Path) -> None:
         assert float(row["max_pressure [Pa]"]) <= hardness
     assert np.mean(share[0.4e9, 70.0]) > np.mean(share[0.8e9, 70.0]) > np.mean(share[1.6e9, 70.0])
     capped, elastic = document(job, "ball.json"), document(job, "elastic.json")
-    assert capped["max_pressure"] == pytest.approx(0.8e9) < elastic["max_pressure"]
+    assert capped["max_pressure"] == pytest.approx(0.8e9)
+    assert elastic["max_pressure"] > 0.8e9
     assert capped["contact_area"] > elastic["contact_area"]
     assert capped["friction_coefficient"] > elastic["friction_coefficient"]
