@@ -30,10 +30,12 @@ lint: $(READY)
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 
-# Hypothesis examples of the solver invariants: other ones every day, resumed when interrupted. Then the table
-# of single faults in the production solver: its comparison with refimpl/plain.py must notice each.
+# The tests that `make test` leaves out. Then hypothesis examples of the solver invariants: other ones every day,
+# resumed when interrupted. Then the table of single faults in the production solver: its comparison with
+# refimpl/plain.py must notice each.
 nightly: $(READY)
 	@mkdir -p $(OUT)
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m nightly
 	$(BIN)/python -m verification.properties --examples 10000 --seed $$(date +%Y%m%d) --json $(OUT)/hypothesis.json
 	$(BIN)/python -m tests.faults.run --json $(OUT)/faults.json
 

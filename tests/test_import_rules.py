@@ -87,11 +87,9 @@ def test_the_rule_sees_a_breach(place: str, source: str) -> None:
     assert breaches(ROOT / place, source)
 
 
-def test_writers_of_result_files_may_import_their_form() -> None:
+def test_what_the_rule_allows() -> None:
+    """Writers of result files import their form; the command line imports reports."""
     assert not breaches(ROOT / "verification/runner.py", "from reports.result_files import write_result")
-
-
-def test_the_command_line_may_import_reports() -> None:
     assert not breaches(ROOT / "verification/cli/report.py", "from reports.generator import render")
 
 
@@ -115,16 +113,10 @@ def may_import(importer: str, imported: str) -> bool:
     return own == other or FLOOR[other] < FLOOR[own]
 
 
-def test_every_room_stands_on_a_floor() -> None:
+def test_rooms_import_lower_floors_only() -> None:
     assert {room(name) for name in REFIMPL} == set(FLOOR)
-
-
-@pytest.mark.parametrize("name", REFIMPL)
-def test_rooms_import_lower_floors_only(name: str) -> None:
-    assert [other for other in sorted(uses(name, "refimpl")) if not may_import(name, other)] == []
-
-
-def test_a_room_beside_or_above_is_a_breach() -> None:
+    used = [(name, other) for name in REFIMPL for other in uses(name, "refimpl")]
+    assert [pair for pair in used if not may_import(*pair)] == []
     assert not may_import("refimpl.solvers.paper", "refimpl.scene.scene")
     assert not may_import("refimpl.model.problem", "refimpl.operators.fft")
     assert may_import("refimpl.solution.limits", "refimpl.scene.scene")
@@ -138,15 +130,10 @@ def test_no_file_imports_itself_through_others(package: str) -> None:
     assert circles == []
 
 
-@pytest.mark.parametrize("name", [n for n in REFIMPL if room(n) == "solvers"])
-def test_solvers_see_a_problem_alone(name: str) -> None:
-    assert not {room(other) for other in closure(name)} & {
-        "scene",
-        "planning",
-        "solution",
-        "surfaces",
-        "driver",
-    }
+def test_solvers_see_a_problem_alone() -> None:
+    others = {"scene", "planning", "solution", "surfaces", "driver"}
+    solvers = [name for name in REFIMPL if room(name) == "solvers"]
+    assert [name for name in solvers if others & {room(other) for other in closure(name)}] == []
 
 
 def test_the_plain_reference_shares_nothing_with_what_it_judges() -> None:
@@ -182,9 +169,9 @@ def test_the_plain_reference_is_one_page() -> None:
 JUDGES = ("refimpl.model.certificate", "refimpl.bounds.proven_bounds", "refimpl.solution.limits")
 
 
-@pytest.mark.parametrize("name", [*JUDGES, *(n for n in REFIMPL if room(n) == "accuracy")])
-def test_judges_take_problem_and_state(name: str) -> None:
-    assert "refimpl.solution.solution" not in closure(name)
+def test_judges_take_problem_and_state() -> None:
+    judges = [*JUDGES, *(name for name in REFIMPL if room(name) == "accuracy")]
+    assert [name for name in judges if "refimpl.solution.solution" in closure(name)] == []
 
 
 def test_a_solution_is_built_once() -> None:
@@ -194,33 +181,26 @@ def test_a_solution_is_built_once() -> None:
     assert [n for n, text in sources.items() if re.search(r"replace\((solution|solved),", text)] == []
 
 
-COMPLIANCES = {"normal_compliance", "shear_compliance"}
-
-
-def test_compliances_are_multiplied_in_one_module() -> None:
-    readers = {n for n in REFIMPL if attribute_reads(n, "refimpl", COMPLIANCES)}
-    assert readers <= {
-        "refimpl.model.materials",
-        "refimpl.model.elasticity",
-        "refimpl.half_space.influence_error_3d",
-    }
-
-
-def test_only_the_law_and_scene_files_know_tau_and_beta() -> None:
-    readers = {n for n in REFIMPL if attribute_reads(n, "refimpl", {"tau", "beta"})}
-    assert readers <= {
-        "refimpl.model.friction",
-        "refimpl.plain",
-        "refimpl.scene.scene_file",
-        "refimpl.scene.parameters",
-    }
+@pytest.mark.parametrize(
+    ("attributes", "allowed"),
+    [
+        (
+            {"normal_compliance", "shear_compliance"},  # multiplied in one module
+            {"model.materials", "model.elasticity", "half_space.influence_error_3d"},
+        ),
+        ({"tau", "beta"}, {"model.friction", "plain", "scene.scene_file", "scene.parameters"}),
+    ],
+)
+def test_few_modules_read_an_attribute(attributes: set[str], allowed: set[str]) -> None:
+    readers = {name for name in REFIMPL if attribute_reads(name, "refimpl", attributes)}
+    assert readers <= {f"refimpl.{name}" for name in allowed}
 
 
 ASK_THE_GRID = {"grid", "operators", "scene", "surfaces", "measured", "plain"}
 
 
-@pytest.mark.parametrize("name", [n for n in REFIMPL if room(n) not in ASK_THE_GRID])
-def test_shapes_and_topology_come_from_the_grid(name: str) -> None:
-    text = modules("refimpl")[name].read_text(encoding="utf-8")
-    found = re.findall(r"M \* M|\(M, M\)|M\*\*2|\bif [\w.]*periodic\b|\bif not [\w.]*periodic\b", text)
-    assert found == []
+def test_shapes_and_topology_come_from_the_grid() -> None:
+    pattern = r"M \* M|\(M, M\)|M\*\*2|\bif [\w.]*periodic\b|\bif not [\w.]*periodic\b"
+    sources = modules("refimpl")
+    others = [name for name in REFIMPL if room(name) not in ASK_THE_GRID]
+    assert [n for n in others if re.search(pattern, sources[n].read_text(encoding="utf-8"))] == []

@@ -62,8 +62,12 @@ def test_it_is_committed_without_outputs(name: str) -> None:
     assert cells(name)[0]["source"][0].startswith("# ")
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", STATED)
+IN_CI = "checking_a_solver"
+
+
+@pytest.mark.parametrize(
+    "name", [name if name == IN_CI else pytest.param(name, marks=pytest.mark.nightly) for name in STATED]
+)
 def test_it_runs_and_prints_its_numbers(name: str, tmp_path: Path) -> None:
     nbformat = pytest.importorskip("nbformat", reason="the extra notebooks, which dev includes")
     nbclient = pytest.importorskip("nbclient", reason="the extra notebooks, which dev includes")

@@ -47,15 +47,8 @@ def test_every_dependency_states_a_least_version() -> None:
 
 
 EXTRAS_TESTED_ELSEWHERE = {
-    "instrument",
-    "rigorous",
-    "fast",
-    "mutation",
-    "tamaas",
-    "contactmechanics",
-    "aspher",
-    "dev",
-}
+    "instrument", "rigorous", "fast", "mutation", "tamaas", "contactmechanics", "aspher", "dev",
+}  # fmt: skip
 """The first three are set up by make beside dev; the others are of studies, which tests do not run."""
 
 
@@ -71,7 +64,6 @@ OPTIONAL = (
 )  # fmt: skip
 
 
-@pytest.mark.slow
 def test_without_any_extra_it_solves_plots_and_writes_csv(tmp_path: Path) -> None:
     blocked = "".join(f"sys.modules[{name!r}] = None\n" for name in OPTIONAL)
     (tmp_path / "sitecustomize.py").write_text(

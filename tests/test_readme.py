@@ -14,43 +14,38 @@ from tests.documents import ROOT, blocks, commands, run
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.parametrize("report", [False, pytest.param(True, marks=pytest.mark.nightly)])
 def test_every_block_runs_and_prints_what_the_readme_says(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    report: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Make is what CI runs; a whole report, which takes a minute, is drawn by a test of its own."""
     (tmp_path / "docs").mkdir()
     monkeypatch.setenv("MPLBACKEND", "agg")
-    page = re.sub(r"^\$ make .*\n", "", README, flags=re.M)  # make: see below, and what CI runs
-    assert run(page, tmp_path) == 1
+    left = r"^\$ make .*\n" if report else r"^\$ (make|\.venv/bin/rough-friction report) .*\n"
+    assert run(re.sub(left, "", README, flags=re.M), tmp_path) == 1
     made = {path.name for path in tmp_path.rglob("*") if path.is_file()}
-    assert made == {"table1-rough.png", "hertz.json", "hertz.vtu", "results.json", "report.html"}
+    assert made - {"report.html"} == {"table1-rough.png", "hertz.json", "hertz.vtu", "results.json"}
+    assert ("report.html" in made) is report
 
 
-def test_the_first_example_is_short() -> None:
+def test_its_example_is_short_and_its_commands_are_those_of_the_set_up() -> None:
     (example,) = (block.text for block in blocks(README) if block.language == "python")
     assert len(example.strip().splitlines()) <= 12
+    lines = [line for b in blocks(README) if b.language == "console" for line, _ in commands(b)]
+    assert len(lines) >= 8
+    assert all(line.startswith(("make ", ".venv/bin/rough-friction ")) for line in lines)
 
 
-def test_its_commands_are_those_of_the_set_up() -> None:
-    shown = [line for b in blocks(README) if b.language == "console" for line, _ in commands(b)]
-    assert len(shown) >= 8
-    assert all(line.startswith(("make ", ".venv/bin/rough-friction ")) for line in shown)
-
-
-@pytest.mark.parametrize("target", ["setup", "report", "test", "clean"])
-def test_the_make_targets_exist(target: str) -> None:
-    assert f"make {target}" in README
-    assert re.search(rf"^{target}:", (ROOT / "Makefile").read_text(), flags=re.M)
-
-
-def test_the_files_it_names_exist() -> None:
-    links = re.findall(r"!\[[^]]*\]\(([^)]+)\)", README)
-    assert links
-    for name in [*links, "CITATION.cff", "CHANGELOG.md", "refimpl/data/scenes", "verification/cases"]:
-        assert (ROOT / name).exists(), name
-
-
-def test_ci_runs_the_readmes_test_command() -> None:
+def test_what_it_names_is_there() -> None:
+    makefile = (ROOT / "Makefile").read_text()
+    for target in ("setup", "report", "test", "nightly", "clean"):
+        assert f"make {target}" in README
+        assert re.search(rf"^{target}:", makefile, flags=re.M)
     assert "make test" in (ROOT / ".ci/run").read_text()
+    pictures = re.findall(r"!\[[^]]*\]\(([^)]+)\)", README)
+    assert pictures
+    for name in [*pictures, "CITATION.cff", "CHANGELOG.md", "refimpl/data/scenes", "verification/cases"]:
+        assert (ROOT / name).exists(), name
 
 
 JUDGED = {
@@ -90,3 +85,23 @@ def test_the_table_of_bars_is_that_of_the_results() -> None:
     assert f"are {longer.split()[-1]} times the error in the median" in text
     scenes = sum(last - first + 1 for first, last in (study["seeds"] for study in studies))
     assert f"on {scenes} random scenes" in text
+
+
+NUMBERS = ("contact_area", "contact_area_corrected", "friction_coefficient", "max_pressure", "approach")
+HEAD = "| class of scene | A | A, corrected | mu | p_max | approach |"
+
+
+def test_every_class_and_number_is_that_of_the_study() -> None:
+    lines = (ROOT / "docs/error-bars.md").read_text(encoding="utf-8").splitlines()
+    start = lines.index(HEAD) + 2
+    stated = {}
+    for line in lines[start : lines.index("", start)]:
+        name, *cells = (cell.strip() for cell in line.strip("|").split("|"))
+        stated[name] = cells
+    table = committed("coverage_classes")["table"]
+    found: dict[str, list[str]] = {}
+    for row in table:
+        if row["class"] and row["number"] in NUMBERS:
+            cell = f"{100 * row['held']:.0f} % / {100 * row['usable']:.0f} %"
+            found.setdefault(row["class"], []).append(cell)
+    assert stated == found

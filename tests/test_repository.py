@@ -1,4 +1,4 @@
-"""What git tracks stays small: people clone it, and read its differences."""
+"""What git tracks stays small, as people clone it and read its differences; settings of all tests."""
 
 from __future__ import annotations
 
@@ -43,3 +43,10 @@ def test_every_result_file_is_compressed_and_has_its_command_in_the_readme() -> 
     rows = (FOLDER / "README.md").read_text(encoding="utf-8").splitlines()
     named = {row.split("`")[1] for row in rows if row.startswith("| `")}
     assert named == {f"{name_of(path)}.json" for path in result_paths(FOLDER)}
+
+
+def test_numbers_below_the_usual_absolute_tolerance_are_compared() -> None:
+    """`tests.conftest` removes it: compliances of 1e-17 and 2e-17 m/Pa are not equal, nor is 1e-300 zero."""
+    assert pytest.approx(1e-17, rel=0.5) != 2e-17
+    assert pytest.approx(0.0) != 1e-300
+    assert pytest.approx([1e-17, 0.0], rel=1e-6) == [1.0000001e-17, 0.0]

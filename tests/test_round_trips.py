@@ -18,8 +18,6 @@ from hypothesis import strategies as st
 
 import refimpl as rf
 from appendix_a.fem.coefficient_map import CoefficientMap
-from refimpl.accuracy.grid_features import GridFeatures
-from refimpl.grid import Grid
 from refimpl.model.problem import Terms
 from refimpl.planning.plan import Plan, make_plan
 from refimpl.scene.discretise import discretise
@@ -263,14 +261,6 @@ def test_a_changed_solution_keeps_the_rest() -> None:
         replace(solution, presure=solution.pressure)  # type: ignore[call-arg]  # the point
     with pytest.raises(AttributeError):
         solution.pressure = 2 * solution.pressure  # type: ignore[misc]  # the point
-
-
-@FEW
-@given(instances(GridFeatures, KNOWN), instances(Grid, KNOWN))
-def test_features_change_no_field_beside_the_one_that_is_replaced(features: GridFeatures, grid: Grid) -> None:
-    changed = plain(replace(features, grid=grid))
-    assert isinstance(changed, dict)
-    assert changed == {**plain(features), "grid": plain(grid)}  # type: ignore[dict-item]  # a table
 
 
 def test_the_map_of_coefficients(tmp_path: Path) -> None:

@@ -150,11 +150,6 @@ def test_wave_kernel_against_its_double_integral() -> None:
         assert complex(wave_kernel(one(x), one(y), k)[0]) == pytest.approx(complex(expected), rel=0.01)
 
 
-def test_kernel_is_real_but_for_the_phase_of_the_midpoint() -> None:
-    kernel = wave_kernel(X[1:7], Y[1:7], 0.3) * np.exp(-0.15j * X[1:7])
-    assert np.abs(kernel.imag).max() < 1e-14 * np.abs(kernel.real).max() + 1e-17
-
-
 def test_growth_is_the_small_wavenumber_limit() -> None:
     """What is left out is k r and (a / r)^2 times it: 5 % at k r = 0.025 to 0.05, r = 20 a and 40 a."""
     long_wave = Waviness(1.0, 2 * np.pi / 1.25e-3, 0.1)

@@ -1,6 +1,5 @@
 """Closed forms of the half-plane against the equations they solve."""
 
-import mpmath as mp
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -49,12 +48,3 @@ def test_strips_are_integrals_of_point_forces(nu):
             value, _ = quad(shift, -1.0, 1.0, points=[0.0, min(max(x, -1.0), 1.0)], epsabs=1e-11)
             # quadrature asked for 1e-11, the logarithm's end points cost some of it
             assert strip(np.array([x]), nu)[0] == pytest.approx(value, abs=1e-8)
-
-
-def test_pressed_strip_against_mpmath():
-    exact = []
-    for x in (0.5, 3):
-        integral = mp.quad(lambda t, x=x: mp.log(abs(x - t)), [-1, min(x, 1), 1])
-        exact.append(-2 / mp.pi * (integral + 2))
-    # E = 1, nu = 0; quad's 15 digits, and the logarithm's end point in the first
-    assert pressed_strip(np.array([0.5, 3.0]), 0.0) == pytest.approx([float(v) for v in exact], rel=1e-9)

@@ -224,7 +224,8 @@ def scene(kind: str, seed: int, classes: Mapping[str, Kind] = CLASSES) -> rf.Sce
         share = draw.log(*draw.pressed_share)
         return _with_friction(draw, kind, probe, share * pressed * SIDE * min(draw.size), pressed)
     a = min(draw.size) * draw.log(*draw.radii)
-    ball = Ball(draw.modulus, a**2 / ((height or RMS) * draw.log(1.5, 30)), a)
+    height = height or a / 1500  # a ball on a flat has 50 to 1000 times the contact's radius
+    ball = Ball(draw.modulus, a**2 / (height * draw.log(1.5, 30)), a)
     pressed = max(ball.pressure, 0.5 * draw.modulus * slope)
     under = replace(probe, upper=rf.Body(draw.upper, rf.Sphere(ball.R)))
     return _with_friction(draw, kind, under, ball.load, pressed)

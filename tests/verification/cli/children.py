@@ -1,4 +1,4 @@
-"""Children that limits, signals and shortages are tried on, and the studies that they run."""
+"""Child processes that limits, signals and shortages are tried on, and stores that sweeps left."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from verification.sweep.study import Study
 from verification.sweep.study_file import study_from_dict
 
 LONG = ["solve", "table1-rough", "--grid", "1024", "--tolerance", "1e-12"]
-STUDY = 'scene = "table1-rough"\nrealisations = 40\n[vary]\ngrid = [12, 16]\n'
 
 
 class Ended(NamedTuple):

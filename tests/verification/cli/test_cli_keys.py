@@ -14,7 +14,7 @@ from refimpl.scene.scene_file import _OPTIONAL_KEYS, _SCENE_KEYS, scene_from_dic
 from refimpl.surfaces import surface_from_dict
 from tests.documents import ROOT
 from verification.cli import main
-from verification.cli.keys import also_in, page
+from verification.cli.keys import page
 from verification.sweep.keys import study_keys
 from verification.sweep.study_file import KEYS, SOLVE_KEYS, study_from_dict
 
@@ -36,18 +36,6 @@ def test_all_keys_that_a_file_may_have_are_there() -> None:
         surface_from_dict({"kind": "self_affine", "none": 1})
     listed = refused.value.allowed.partition(": ")[2].split(", ")
     assert [key.name for key in TABLES["surface, self_affine"]] == listed
-
-
-def test_a_few_rows_by_hand() -> None:
-    found = {key.name: key for key in TABLES["material"]}
-    assert (found["E"].kind, found["E"].unit, found["E"].default) == ("number", "Pa", REQUIRED)
-    assert found["nu"].allowed == "a Poisson's ratio in (-1, 0.5]"
-    measured = {key.name: key for key in TABLES["surface, measured"]}
-    assert (measured["max_missing"].kind, measured["max_missing"].default) == ("number", "0.05")
-    assert measured["channel"].kind == "text or whole number"
-    assert measured["level"].allowed.endswith("or a polynomial's total degree, 0 to 10")
-    settings = {key.name: key for key in study_keys()["solve"]}
-    assert (settings["method"].kind, settings["method"].default) == ("text", '"fft"')
 
 
 def test_required_keys_are_those_that_cannot_be_missing() -> None:
@@ -81,15 +69,6 @@ def test_stated_defaults_are_what_is_used() -> None:
     bare = study_from_dict({"scene": "table1-rough", "vary": {"grid": 8}})
     whole = {"realisations": 1, "first_seed": 1, "vary": {"grid": 8}, "solve": {}}
     assert study_from_dict({"scene": "table1-rough", **whole}) == bare
-
-
-def test_where_else_a_name_may_stand() -> None:
-    assert also_in("scene")["load"] == "vary, tolerances"
-    assert also_in("scene")["sliding_offset"] == "vary"
-    assert also_in("self_affine")["short_cut"] == "vary"
-    assert also_in("self_affine")["rms_gradient"] == "vary, tolerances"
-    assert "acf_level" not in also_in("gaussian")
-    assert also_in("measured") == {}
 
 
 def test_a_key_without_a_text_and_a_text_without_a_key_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -42,13 +42,8 @@ def test_all_modules_are_found_and_ordered_by_module_and_line(make_package: Make
 )
 def test_an_id_declared_twice_is_refused(make_package: Make, modules: dict[str, str]) -> None:
     package = make_package(**modules)
-    with pytest.raises(ValueError, match="declared twice"):
-        registry.load(package)
-
-
-def test_an_id_declared_twice_is_refused_whichever_module_came_first(make_package: Make) -> None:
-    package = make_package(alpha=source("a/1"), beta=source("a/1"))
-    importlib.import_module(f"{package}.beta")
+    if "beta" in modules:  # whichever module came first
+        importlib.import_module(f"{package}.beta")
     with pytest.raises(ValueError, match="declared twice"):
         registry.load(package)
 
@@ -120,11 +115,6 @@ def test_a_selection_without_cases_is_an_error(make_package: Make, globs: tuple[
     package = make_package(alpha=source("a/1"), beta=source("a/full", tier="full"))
     with pytest.raises(LookupError, match=r"none|a/full"):
         registry.select(registry.load(package), Tier.QUICK, globs)
-
-
-def test_an_empty_registry_is_an_error(make_package: Make) -> None:
-    with pytest.raises(LookupError):
-        registry.select(registry.load(make_package()), Tier.FULL)
 
 
 def test_the_real_cases_load_and_their_ids_are_unique() -> None:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import importlib.util
 import json
 import sys
+import time
 from collections.abc import Callable
-from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
-from verification.framework import files, provenance, runner
+from verification.framework import files, provenance, runner, workers
 from verification.framework.case import Case, Measured, Metric, Result, Status, Tier
 
 Make = Callable[..., str]
@@ -85,45 +87,29 @@ def run_of(*statuses: str) -> runner.Run:
     ],
 )
 def test_exit_status(statuses: list[str], exit_status: int) -> None:
-    assert run_of(*statuses).exit_status == exit_status
+    run = run_of(*statuses)
+    assert run.exit_status == exit_status
+    assert run.counts == {status.value: statuses.count(status.value) for status in Status}
 
 
-def test_an_empty_selection_is_an_error(make_package: Make) -> None:
-    with pytest.raises(LookupError):
-        runner.run("quick", only=["no/such"], package=make_package(good=GOOD))
+def test_results_come_in_the_order_of_the_cases(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The case in the middle ends last: the other worker has taken the third one by then."""
 
+    class Player:
+        def run(self, one: Any) -> Any:
+            time.sleep(0.2 if one.module == "b" else 0.0)
+            return SimpleNamespace(id=one.id)
 
-def test_a_file_is_whole_or_as_it_was(tmp_path: Path) -> None:
-    path = tmp_path / "results.json"
-    files.write_text("old", path)
+        def close(self) -> None:
+            pass
 
-    def break_off() -> None:
-        with files.replacing(path) as temporary:
-            temporary.write_text("half of the n")
-            raise RuntimeError
-
-    with pytest.raises(RuntimeError):
-        break_off()
-    assert path.read_text() == "old"
-    files.write_text("new", path)
-    assert path.read_text() == "new"
-    assert [p.name for p in tmp_path.iterdir()] == ["results.json"]
-
-
-def test_json_refuses_what_json_does_not_have() -> None:
-    with pytest.raises(ValueError):
-        files.to_json({"x": float("nan")})
-
-
-@pytest.mark.parametrize("terminal", [True, False])
-def test_progress_is_for_terminals(
-    terminal: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
-    progress = files.Progress(3)
-    progress.tick("pass  a/b")
-    progress.close()
-    assert ("[1/3] pass  a/b" in capsys.readouterr().err) is terminal
+    monkeypatch.setattr(workers, "Worker", Player)
+    cases: Any = [SimpleNamespace(id=f"{letter}/1", module=letter) for letter in "abc"]
+    ended: list[str] = []
+    found = workers.run_all(cases, 2, lambda result: ended.append(result.id))
+    assert [result.id for result in found] == ["a/1", "b/1", "c/1"]
+    assert sorted(ended) == ["a/1", "b/1", "c/1"]
+    assert ended[-1] == "b/1"
 
 
 def test_provenance_says_what_is_not_installed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -133,11 +119,21 @@ def test_provenance_says_what_is_not_installed(monkeypatch: pytest.MonkeyPatch) 
     assert found["surely-not-installed"] is None
 
 
-def test_a_commit_is_that_of_our_own_checkout(monkeypatch: pytest.MonkeyPatch) -> None:
-    for prefix, found in (("vendored/", (None, None)), ("", ("x", True))):
-        answers = {"--show-prefix": prefix}
-        monkeypatch.setattr(provenance, "_git", lambda _, *asked, a=answers: a.get(asked[-1], "x"))
-        assert tuple(provenance.revision().values()) == found
+@pytest.mark.parametrize(
+    ("prefix", "changes", "found"),
+    [
+        ("", "", ("abc", False)),
+        ("", " M a.py", ("abc", True)),
+        ("", None, ("abc", None)),  # git cannot tell
+        ("vendored/", "", (None, None)),  # another repository's checkout
+    ],
+)
+def test_a_commit_is_that_of_our_own_checkout(
+    prefix: str, changes: str | None, found: tuple[object, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answers = {"--show-prefix": prefix, "HEAD": "abc", "--porcelain": changes}
+    monkeypatch.setattr(provenance, "_git", lambda root, *words: answers[words[-1]])
+    assert tuple(provenance.revision().values()) == found
 
 
 def test_the_command_names_no_directory(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import refimpl as rf
-from reports.result_files import read_result
+from reports.result_files import committed, read_result
 from reports.studies.accuracy_costs import build
 from verification.benchmarks import cost_of_accuracy
 from verification.benchmarks.cost_of_accuracy import LOWER, class_scene, costs, solve_grids
@@ -85,9 +85,9 @@ def test_the_command_makes_the_committed_document(tmp_path: Path, monkeypatch: p
     monkeypatch.setattr(cost_of_accuracy, "SEEDS", (1,))
     cost_of_accuracy.main(["--json", str(tmp_path / "costs.json")])
     made = read_result(tmp_path / "costs.json")
-    committed = read_result(Path(__file__).parents[3] / "reports" / "results" / "accuracy_costs.json")
-    assert [one["class"] for one in made["classes"]] == [one["class"] for one in committed["classes"]]
-    assert made["classes"][0]["prices"][0].keys() == committed["classes"][0]["prices"][0].keys()
+    stored = committed("accuracy_costs")
+    assert [one["class"] for one in made["classes"]] == [one["class"] for one in stored["classes"]]
+    assert made["classes"][0]["prices"][0].keys() == stored["classes"][0]["prices"][0].keys()
     (table,) = build(made).tables
     assert len(table.rows) == 3 * len(LOWER)
 

@@ -13,9 +13,8 @@ import pytest
 import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.measured import measured_surface as measured
-from refimpl.scene.scene_file import scene_from_dict
 from verification.sweep import study as study_module
-from verification.sweep.run import COORDINATES, OUTCOMES, execute
+from verification.sweep.run import COORDINATES, execute
 from verification.sweep.study import Study
 from verification.sweep.study_file import read_study, shipped_studies, study_from_dict
 
@@ -28,6 +27,8 @@ def varied(**axes: list[float]) -> Study:
 
 def test_every_combination_once() -> None:
     study = varied(load=[14, 70.0], lower_rms=[0.0, 1e-6, 2e-6])
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        study.realisations = 3  # type: ignore[misc]  # the point of the test
     runs = list(study.runs())
     assert len(runs) == len(study) == 2 * 2 * 3
     assert len({run.key for run in runs}) == len(runs)
@@ -43,70 +44,24 @@ def test_realisations_differ_in_their_seeds_only_and_keep_them_over_the_axes() -
 
 
 def test_no_roughness_leaves_the_shape() -> None:
-    (run,) = study_from_dict(
-        BASE | {"realisations": 1, "vary": {"grid": [8], "upper_rms": [0], "lower_rms": [0]}}
-    ).runs()
+    flat = {"grid": [8], "upper_rms": [0], "lower_rms": [0]}
+    (run,) = study_from_dict({"scene": "table1-rough", "vary": flat}).runs()
     assert [part["kind"] for part in run.inputs["scene"]["upper"]["surface"]] == ["sphere"]
     assert run.inputs["scene"]["lower"]["surface"] == [{"kind": "flat"}]
     assert run.coordinates["correlation_length"] is None
 
 
-def test_a_run_is_what_solve_gives_for_its_scene() -> None:
-    (run,) = study_from_dict(
-        BASE | {"realisations": 1, "normalise": True, "vary": {"grid": [32], "sliding_direction": [0.7]}}
-    ).runs()
-    row, seconds = execute(run.inputs)
-    direct = rf.solve(scene_from_dict(run.inputs["scene"], Path()), grid=32)
-    assert seconds > 0
-    assert set(row) == set(OUTCOMES)
-    for name in ("friction_coefficient", "contact_area", "max_pressure", "binormal_force", "approach"):
-        assert row[name] == getattr(direct, name)
-    local = direct.traction * direct.slopes.cos_x * direct.slopes.cos_y
-    assert row["elastic_friction"] == pytest.approx(
-        direct.friction_force - float(np.sum(local)) * direct.grid.element_area, rel=1e-9
-    )
-
-
-@pytest.mark.parametrize(
-    "change", [{"grid": [24]}, {"load": [69.0]}, {"beta": [0.0]}, {"sliding_offset": [1e-6]}]
-)
-def test_every_input_changes_the_key(change: dict[str, list[float]]) -> None:
-    (first, *_), (other, *_) = (
-        varied().runs(),
-        study_from_dict(BASE | {"vary": {"grid": [16]} | change}).runs(),
-    )
-    assert first.key != other.key
-
-
-def test_the_code_is_an_input(monkeypatch: pytest.MonkeyPatch) -> None:
-    (before, *_) = varied().runs()
+def test_every_input_and_the_code_change_the_key(monkeypatch: pytest.MonkeyPatch) -> None:
+    changes = [{}, {"grid": [24]}, {"load": [69.0]}, {"beta": [0.0]}, {"sliding_offset": [1e-6]}]
+    studies = [study_from_dict(BASE | {"vary": {"grid": [16]} | change}) for change in changes]
+    assert len({next(study.runs()).key for study in studies}) == len(changes)
+    assert next(varied(load=[14]).runs()).key == next(varied(load=[14.0]).runs()).key
+    before = next(varied().runs())
     monkeypatch.setattr(study_module, "code_digest", lambda: "another version")
-    (after, *_) = varied().runs()
+    after = next(varied().runs())
     assert before.key != after.key
     with pytest.raises(RuntimeError, match="differs"):
         execute(after.inputs)
-
-
-def test_a_whole_number_and_its_float_are_one_run() -> None:
-    assert [r.key for r in varied(load=[14]).runs()] == [r.key for r in varied(load=[14.0]).runs()]
-
-
-def test_a_measured_surface_counts_by_its_content(tmp_path: Path) -> None:
-    file = tmp_path / "heights.npy"
-    scene = tmp_path / "scene.toml"
-    surface = 'kind = "measured"\npath = "heights.npy"\nunit = "m"\npixel_size = 1e-6'
-    scene.write_text(
-        "load = 1e-3\nside = 8e-6\n[upper.material]\nE = 1e9\nnu = 0.3\n"
-        "[upper.surface]\nkind='sphere'\nradius=1e-4\n"
-        f"[lower.material]\nE = 1e9\nnu = 0.3\n[lower.surface]\n{surface}\n"
-    )
-    keys = []
-    for scale in (1e-9, 2e-9):
-        np.save(file, scale * np.random.default_rng(1).standard_normal((16, 16)))
-        (run,) = study_from_dict({"scene": "scene.toml", "vary": {"grid": [8]}}, tmp_path).runs()
-        assert execute(run.inputs)[0]["contact_area"] > 0
-        keys.append(run.key)
-    assert keys[0] != keys[1]
 
 
 @pytest.mark.parametrize("name", shipped_studies())
@@ -114,6 +69,9 @@ def test_shipped_studies_are_good(name: str) -> None:
     assert tuple(next(iter(read_study(name).runs())).coordinates) == COORDINATES
 
 
+PATH, SEED = "lower.surface[0].path", "lower.surface[0].seed"
+ONE = {"scene": "hertz", "realisations": 1}
+LONG = {"grid": [16], "lower_rms": [0], "correlation_length": [1e-4, 1e-2, 1e-3]}  # beyond the domain
 REFUSED: list[tuple[str, dict[str, Any]]] = [
     ("study.colour", {"colour": 1}),
     ("scene", {"scene": None}),
@@ -138,10 +96,7 @@ REFUSED: list[tuple[str, dict[str, Any]]] = [
     ("lower.surface[0].rms", {"vary": {"grid": [16], "lower_rms": [-1e-6]}}),
     ("realisations", {"scene": "hertz", "realisations": 3}),
     ("realisations", {"vary": {"grid": [16], "upper_rms": [0.0], "lower_rms": [0.0]}}),
-    (
-        "vary.correlation_length",
-        {"scene": "hertz", "realisations": 1, "vary": {"grid": [16], "correlation_length": [1e-4, 2e-4]}},
-    ),
+    ("vary.correlation_length", ONE | {"vary": {"grid": [16], "correlation_length": [1e-4, 2e-4]}}),
     ("solve.speed", {"solve": {"speed": 1}}),
     ("solve.method", {"solve": {"method": "x"}}),
     ("solve.method", {"solve": {"method": ["fft"]}}),
@@ -154,14 +109,12 @@ REFUSED: list[tuple[str, dict[str, Any]]] = [
     ("friction.tau", {"vary": {"grid": [16], "tau": [1e6, 1e20]}}),
     ("lower.surface", {"vary": {"grid": [16], "lower_rms": [0.5, 1e-6]}}),
     ("lower.surface[0].correlation_length", {"vary": {"grid": [8, 16], "correlation_length": [1e-9, 1e-4]}}),
-    (
-        "upper.surface[1].normalise",
-        {
-            "normalise": True,
-            "vary": {"grid": [16], "lower_rms": [0], "correlation_length": [1e-4, 1e-2, 1e-3]},
-        },
-    ),
+    ("upper.surface[1].normalise", {"normalise": True, "vary": LONG}),
     ("vary", {"realisations": 10**6, "vary": {"grid": [16], "load": [1, 2]}}),
+    ("vary", {"realisations": 10**19}),
+    (f"vary.{PATH}", {"realisations": 1, "vary": {"grid": 8, PATH: ["b.npy"]}}),  # no measured surface
+    *((f"vary.{SEED}", {"realisations": 1, "vary": {"grid": 8, SEED: k}}) for k in ([1.5], [-1], [1, 1])),
+    ("vary.friction.tau", {"vary": {"grid": 8, "tau": 1e6, "friction.tau": 1e6}}),
 ]
 
 
@@ -172,36 +125,86 @@ def test_bad_studies_are_refused_by_name(field: str, change: dict[str, Any]) -> 
     assert refused.value.field == field
 
 
+def heights(seed: int, scale: float = 1e-9) -> np.ndarray:
+    """A map of 16 x 16 points (m)."""
+    return scale * np.random.default_rng(seed).standard_normal((16, 16))
+
+
 @pytest.fixture
-def reads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[object]:
-    """A scene of 8 um on a surface of which 16 um were measured; how often its file was read."""
-    np.save(tmp_path / "heights.npy", 1e-9 * np.random.default_rng(1).standard_normal((16, 16)))
-    (tmp_path / "scene.toml").write_text(
+def maps(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A scene of 8 um on a surface of which 16 um were measured, and three maps, in the working directory."""
+    monkeypatch.chdir(tmp_path)
+    Path("scene.toml").write_text(
         "load = 1e-3\nside = 8e-6\n[upper.material]\nE = 1e9\nnu = 0.3\n"
         "[upper.surface]\nkind='sphere'\nradius=1e-4\n[lower.material]\nE = 1e9\nnu = 0.3\n"
-        "[lower.surface]\nkind = 'measured'\npath = 'heights.npy'\nunit = 'm'\npixel_size = 1e-6\n"
+        "[lower.surface]\nkind = 'measured'\npath = 'a.npy'\nunit = 'm'\npixel_size = 1e-6\n"
     )
+    for seed, name in enumerate("abc"):
+        np.save(f"{name}.npy", heights(seed))
+    return tmp_path
+
+
+@pytest.fixture
+def reads(monkeypatch: pytest.MonkeyPatch) -> list[object]:
+    """A list that grows whenever a measured file is read."""
     counted: list[object] = []
     read = measured.read
     monkeypatch.setattr(measured, "read", lambda *a: (counted.append(a), read(*a))[1])
     return counted
 
 
+def test_measured_surfaces_vary_by_file_and_count_by_content(maps: Path) -> None:
+    def keys() -> list[str]:
+        table = {"scene": "scene.toml", "vary": {"grid": 8, PATH: ["b.npy", "c.npy"]}}
+        found = study_from_dict(table, maps)
+        assert {Path(path).name for path in found.files} == {"scene.toml", "a.npy", "b.npy", "c.npy"}
+        assert all(execute(run.inputs)[0]["contact_area"] > 0 for run in found.runs())
+        return [run.key for run in found.runs()]
+
+    before = keys()
+    assert len(set(before)) == 2
+    np.save("c.npy", heights(2, 2e-9))
+    after = keys()
+    assert after[0] == before[0]
+    assert after[1] != before[1]
+
+
+@pytest.mark.parametrize("names", [["b.npy", "b.npy"], [], [1], "none.npy", ""])
+def test_bad_files_are_refused(names: object, maps: Path) -> None:
+    with pytest.raises(InputError):
+        study_from_dict({"scene": "scene.toml", "vary": {"grid": 8, PATH: names}}, maps)
+
+
+def test_seeds_are_realisations_and_exclude_others() -> None:
+    table = {"scene": "table1-rough", "vary": {"grid": 8, SEED: [0, 6]}}
+    runs = study_from_dict(table).runs()
+    assert [run.inputs["scene"]["lower"]["surface"][0]["seed"] for run in runs] == [0, 6]
+    with pytest.raises(InputError, match="realisations = 3"):
+        study_from_dict(table | {"realisations": 3})
+
+
+def test_every_parameter_of_a_scene_varies_by_its_full_name() -> None:
+    for name, value in rf.scene.parameters.parameters(rf.read_scene("table1-rough")).items():
+        vary = {"grid": 8, name: int(value) if name.endswith("seed") else value}
+        assert len(study_from_dict({"scene": "table1-rough", "vary": vary})) == 1
+    assert varied(**{"friction.tau": [1e6, 2e6]}).vary["tau"] == (1e6, 2e6)
+    same = [[run.key for run in varied(**{name: [0.2]}).runs()] for name in ("beta", "friction.beta")]
+    assert same[0] == same[1]
+
+
 TURNS = {"grid": [8], "sliding_direction": [0.0, 1.5707963267948966, 0.5]}
 
 
 @pytest.mark.parametrize("offsets", [[0.0, 5e-6, 1e-6], [-5e-6], [-5e-6, 1e-6]])
-def test_a_slide_off_a_measured_surface_is_refused_at_once(
-    tmp_path: Path, offsets: list[float], reads: list[object]
-) -> None:
+def test_a_slide_off_a_measured_surface_is_refused_at_once(offsets: list[float], maps: Path) -> None:
     with pytest.raises(InputError) as refused:
-        study_from_dict({"scene": "scene.toml", "vary": TURNS | {"sliding_offset": offsets}}, tmp_path)
+        study_from_dict({"scene": "scene.toml", "vary": TURNS | {"sliding_offset": offsets}}, maps)
     assert (refused.value.field, refused.value.value) == ("sliding_offset", max(offsets, key=abs))
 
 
-def test_a_slide_within_it_is_good_and_the_file_is_read_once(tmp_path: Path, reads: list[object]) -> None:
+def test_a_slide_within_it_is_good_and_the_file_is_read_once(maps: Path, reads: list[object]) -> None:
     axes = TURNS | {"sliding_offset": [-4e-6, 0.0, 4e-6]}
-    assert len(study_from_dict({"scene": "scene.toml", "vary": axes}, tmp_path)) == 9
+    assert len(study_from_dict({"scene": "scene.toml", "vary": axes}, maps)) == 9
     assert len(reads) == 1
 
 
@@ -234,17 +237,22 @@ def test_a_byte_order_mark_is_no_text(tmp_path: Path) -> None:
     assert read_study(path).vary == {"grid": (8,)}
 
 
-def test_files_that_are_no_study(tmp_path: Path) -> None:
-    bad = tmp_path / "bad.toml"
-    bad.write_text("= 1")
-    for path in (bad, tmp_path / "none.toml", "no-such-study"):
-        with pytest.raises(InputError, match="study"):
-            read_study(path)
-
-
-def test_studies_are_frozen() -> None:
-    with pytest.raises(dataclasses.FrozenInstanceError):
-        varied().realisations = 3  # type: ignore[misc]  # the point of the test
+@pytest.mark.parametrize(
+    "text",
+    [
+        "= 1",
+        'scene = "hertz"\n[vary]\ngrid = [8]\nload = [' + "1" * 400 + "]",  # beyond every double
+        'scene = "hertz"\n[vary]\ngrid = [8]\nload = [' + "1" * 5000 + "]",
+        'scene = "' + "x" * 5000 + '"\n[vary]\ngrid = [8]\n',  # longer than a file's name may be
+        'scene = "hertz"\n' + " " * 2**21,
+    ],
+    ids=["no TOML", "400 digits", "5000 digits", "long name", "2 MB"],
+)
+def test_files_that_are_no_study(text: str, tmp_path: Path) -> None:
+    (tmp_path / "bad.toml").write_text(text)
+    for path in (tmp_path / "bad.toml", tmp_path / "none.toml", "no-such-study", "x" * 5000):
+        with pytest.raises(InputError):
+            list(read_study(path).runs())
 
 
 SELF_AFFINE = """
@@ -324,14 +332,6 @@ def test_bad_numbers_of_surfaces_are_refused(
     with pytest.raises(InputError) as refused:
         study_from_dict({"scene": "scene.toml", "vary": {"grid": [32], axis: values}}, tmp_path)
     assert refused.value.field == field
-
-
-def test_a_material_varies_and_one_value_needs_no_list() -> None:
-    varied_E = {"grid": 16, "lower.material.E": [1e9, 2e9], "lower.material.nu": 0.4}
-    runs = list(study_from_dict(BASE | {"realisations": 1, "vary": varied_E}).runs())
-    assert [run.inputs["scene"]["lower"]["material"]["E"] for run in runs] == [1e9, 2e9]
-    assert [run.inputs["scene"]["lower"]["material"]["nu"] for run in runs] == [0.4, 0.4]
-    assert [run.coordinates["grid"] for run in runs] == [16, 16]
 
 
 def test_a_requested_accuracy_chooses_the_grid_and_is_met() -> None:

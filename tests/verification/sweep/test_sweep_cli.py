@@ -1,8 +1,9 @@
-"""`rough-friction sweep`: bad input in one line, progress for terminals only."""
+"""`rough-friction sweep`: tables and documents, curves of files, runs without a solution, progress."""
 
 from __future__ import annotations
 
 import json
+import math
 import re
 import sys
 from pathlib import Path
@@ -11,185 +12,121 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from verification.cli import main
+from tests.verification.cli.commands import OBLONG, Stream, answer, run, shown
 from verification.cli.sweep import _Line
+from verification.sweep import engine
+from verification.sweep.curves import curves
 from verification.sweep.engine import Progress, Sweep
+from verification.sweep.run import COORDINATES, OUTCOMES
+from verification.sweep.study_file import read_study
 
-Capture = pytest.CaptureFixture[str]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "named"),
-    [
-        (["no-such-study"], "study"),
-        (["table3", "--workers", "0"], "--workers"),
-        (["table3", "--store", "nowhere/s.sqlite"], "--store"),
-        (["table3", "--csv", "nowhere/t.csv"], "--csv"),
-        ([], "STUDY"),
-    ],
-)
-def test_bad_input_is_one_line_and_status_2(arguments: list[str], named: str, capsys: Capture) -> None:
-    try:
-        status = main(["sweep", *arguments])
-    except SystemExit as usage:
-        status = int(usage.code or 0)
-    printed = capsys.readouterr()
-    assert status == 2
-    assert printed.out == ""
-    assert printed.err.count("\n") == 1
-    assert named in printed.err
+PATH = "lower.surface[0].path"
 
 
-@pytest.mark.parametrize("option", ["--store", "--csv", "--parquet", "--json"])
-@pytest.mark.parametrize("name", ["study.toml", "scene.toml", "heights.npy"])
-def test_an_output_is_no_input(
-    option: str,
-    name: str,
-    tmp_path: Path,
-    capsys: Capture,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The working directory, with a study of two loads."""
     monkeypatch.chdir(tmp_path)
-    np.save("heights.npy", np.random.default_rng(1).standard_normal((8, 8)) * 1e-9)
-    surface = '[[lower.surface]]\nkind = "measured"\npath = "heights.npy"\nunit = "m"\npixel_size = 2.1e-4\n'
-    text = rf.scene_to_toml(rf.read_scene("table1-rough"))
-    Path("scene.toml").write_text(text + surface)
-    Path("study.toml").write_text('scene = "scene.toml"\n[vary]\ngrid = [8, 16]\n')
-    before = Path(name).read_bytes()
-    assert main(["sweep", "study.toml", option, name]) == 2
-    assert f"{option} = '{name}'" in capsys.readouterr().err
-    assert Path(name).read_bytes() == before
-    assert len(list(tmp_path.iterdir())) == 3
+    Path("study.toml").write_text('scene = "table1-rough"\n[vary]\ngrid = [12]\nload = [1.0, 70.0]\n')
+    return tmp_path
 
 
-def test_the_default_store_is_no_input(
-    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("study.sqlite").write_text('scene = "hertz"\n[vary]\ngrid = [8]\n')
-    assert main(["sweep", "study.sqlite"]) == 2
-    assert "--store = 'study.sqlite'" in capsys.readouterr().err
-
-
-def test_no_two_outputs_are_one_file(
-    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("study.toml").write_text('scene = "hertz"\n[vary]\ngrid = [8]\n')
-    outputs = [
-        (["--store", "keep.sqlite", "--csv", "keep.sqlite"], ("--store", "--csv")),
-        (["--csv", "study.sqlite"], ("--store", "--csv")),  # the default store
-        (["--csv", "x.csv", "--json", "x.csv"], ("--csv", "--json")),
-        (["--csv", "x.csv", "--json", "./x.csv"], ("--csv", "--json")),
-        (["--csv", "-", "--json", "-"], ("--csv", "--json")),
-        (["--store", "s.db", "--json", "s.db-wal"], ("--store", "--json")),
-        (["--store", "s.db", "--csv", "s.db-shm"], ("--store", "--csv")),
-        (["--store", "-"], ("--store",)),
-        (["--parquet", "-"], ("--parquet",)),
-        (["--parquet", "x.csv"], ("--parquet", ".csv")),
-        (["--csv", "x.parquet"], ("--csv", ".parquet")),
-        (["--json", "x.sqlite"], ("--json", ".sqlite")),
-    ]
-    for arguments, named in outputs:
-        try:
-            status = main(["sweep", "study.toml", *arguments])
-        except SystemExit as usage:
-            status = int(usage.code or 0)
-        err = capsys.readouterr().err
-        assert status == 2, arguments
-        assert all(name in err for name in named), err
-        assert err.count("\n") == 1
-    assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
-
-
-def test_csv_to_standard_output_is_all_that_is_there(
-    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("study.toml").write_text('scene = "hertz"\n[vary]\ngrid = [8]\n')
-    command = ["sweep", "study.toml", "--workers", "1", "--csv"]
-    assert main([*command, "table.csv"]) == 0
-    capsys.readouterr()
-    assert main([*command, "-"]) == 0
-    assert capsys.readouterr().out == Path("table.csv").read_text()
+def test_csv_to_standard_output_is_all_that_is_there() -> None:
+    shown("sweep study.toml --workers 1 --csv table.csv")
+    assert shown("sweep study.toml --workers 1 --csv -") == Path("table.csv").read_text()
     assert not Path("-").exists()
 
 
-def test_results_and_a_failed_run(tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
-    from verification.sweep import engine
-
-    sweep = engine.sweep
-    monkeypatch.setattr(engine, "sweep", lambda *a, **k: sweep(*a, **(k | {"workers": 0})))
-    (tmp_path / "study.toml").write_text('scene = "table1-rough"\n[vary]\ngrid = [12]\nload = [1.0, 70.0]\n')
-    arguments = ["sweep", str(tmp_path / "study.toml"), "--store", str(tmp_path / "s.sqlite"), "--json", "-"]
-    assert main(arguments) == 0
-    document = json.loads(capsys.readouterr().out)
+def test_a_document_and_a_failed_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    document = answer("sweep study.toml --workers 1")
     assert (document["found"], document["finished"], document["failures"]) == (0, 2, {})
     assert [row["load"] for row in document["rows"]] == [1.0, 70.0]
-
-    def breaks(inputs: object) -> object:
-        raise ValueError("no luck")
-
-    monkeypatch.setattr(engine, "execute", breaks)
-    assert main([*arguments[:-4], "--store", str(tmp_path / "other.sqlite")]) == 1
-    assert "failed: ValueError: no luck" in capsys.readouterr().out
+    failed = Sweep(2, 0, {"key": "ValueError: no luck"}, [], [], 1.0)
+    monkeypatch.setattr(engine, "sweep", lambda *_, **__: failed)
+    assert "failed: ValueError: no luck" in shown("sweep study.toml", 1)
 
 
-@pytest.mark.parametrize(
-    ("axes", "named"),
-    [
-        ("grid = [500000, 1000000]", "GB"),
-        ("grid = [8, 16]\ncorrelation_length = [1e-4, 1e-9]", "correlation_length"),
-        ("grid = [8, 16]\nlower_rms = [0.5, 1e-6]", "wrong unit"),
-        ("grid = [8, 16]\nload = [1.0, 1e30]", "load = 1e+30"),
-    ],
-)
-def test_what_no_run_could_pose_is_refused_before_there_is_a_store(
-    axes: str, named: str, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("study.toml").write_text(f'scene = "table1-rough"\n[vary]\n{axes}\n')
-    assert main(["sweep", "study.toml"]) == 2
-    assert named in capsys.readouterr().err
-    assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
+def test_a_sweep_over_maps_has_one_size_for_all_offsets_and_a_curve_for_each() -> None:
+    """60 um, of which 8 are lost on both sides, and 80."""
+    rng = np.random.default_rng(1)
+    for name, shape in (("low", (60, 80)), ("other", (60, 80)), ("up", (50, 90))):
+        np.save(f"{name}.npy", 1e-8 * rng.normal(size=shape))
+    text = "load = 1e-3\n"
+    for body, name in (("lower", "low"), ("upper", "up")):
+        text += f'[{body}.material]\nE = 2e11\nnu = 0.3\n[[{body}.surface]]\nkind = "measured"\n'
+        text += f'path = "{name}.npy"\nunit = "m"\npixel_size = 1e-6\n'
+    Path("scene.toml").write_text(text)
+    offsets = "sliding_offset = [0.0, -4e-6, 8e-6]"
+    files = f'"{PATH}" = ["low.npy", "other.npy"]'
+    Path("study.toml").write_text(f'scene = "scene.toml"\n[vary]\ngrid = [16]\n{offsets}\n{files}\n')
+    found = read_study("study.toml")
+    assert found.scene["size"] == pytest.approx([44e-6, 80e-6])
+    assert "no size given: 4.4e-05 x 8e-05 m" in found.notes[0]
+    assert run("sweep study.toml --workers 1 --json s.json").status == 0
+    by_file = curves(json.loads(Path("s.json").read_text())["rows"], "sliding_offset", "contact_area", PATH)
+    assert {Path(str(name)).name: len(points) for name, points in by_file.items()} == {
+        "low.npy": 3,
+        "other.npy": 3,
+    }
 
 
-LIMITED = 'scene = "table1-rough"\nrealisations = 2\n[vary]\ngrid = [12]\n[solve]\ntolerance = 1e-30\n'
+def test_a_sweep_of_a_rectangle() -> None:
+    Path("scene.toml").write_text(OBLONG)
+    Path("study.toml").write_text('scene = "scene.toml"\n[vary]\ngrid = [24]\nload = [1.0, 5.0]\n')
+    assert [run.inputs["scene"]["size"] for run in read_study("study.toml").runs()] == [[2e-3, 1e-3]] * 2
+    row = answer("sweep study.toml --workers 1")["rows"][-1]
+    assert (row["elements_x"], row["elements_y"]) == (24, 12)
+    mu = rf.solve(rf.read_scene("scene.toml"), 24).friction_coefficient
+    assert math.isclose(row["friction_coefficient"], mu, rel_tol=1e-12)
 
 
-def test_what_did_not_converge_is_no_success(tmp_path: Path, capsys: Capture) -> None:
+def test_runs_that_did_not_converge_are_no_success() -> None:
     """No arithmetic meets 1e-30; whether a run stagnates or is cut off first is up to the last bits."""
-    (tmp_path / "study.toml").write_text(LIMITED)
-    store, table = tmp_path / "s.sqlite", tmp_path / "t.csv"
-    command = ["sweep", str(tmp_path / "study.toml"), "--store", str(store), "--workers", "1"]
-    assert main([*command, "--json", "-"]) == 1
-    statuses = json.loads(capsys.readouterr().out)["statuses"]
+    Path("study.toml").write_text(
+        'scene = "table1-rough"\nrealisations = 2\n[vary]\ngrid = [12]\n[solve]\ntolerance = 1e-30\n'
+    )
+    statuses = answer("sweep study.toml --workers 1", 1)["statuses"]
     assert sum(statuses.values()) == 2
     assert set(statuses) <= {"iteration limit", "stagnated"}
-    store.unlink()
-    for _ in range(2):  # solved anew, and found in the store
-        assert main([*command, "--csv", str(table)]) == 1
-        printed = capsys.readouterr().out
-        for status, count in statuses.items():
-            assert re.search(rf"^  {status} +{count}$", printed, flags=re.M)
-            assert table.read_text().count(f",{status},") == count
-        assert "2 of 2 runs did not converge" in printed
-    assert main([*command, "--csv", "-"]) == 1
-    assert "2 of 2 runs did not converge" in capsys.readouterr().err
+    printed = shown("sweep study.toml --csv t.csv", 1)  # found in the store
+    for status, count in statuses.items():
+        assert re.search(rf"^  {status} +{count}$", printed, flags=re.M)
+        assert Path("t.csv").read_text().count(f",{status},") == count
+    assert "2 of 2 runs did not converge" in printed
+    assert "2 of 2 runs did not converge" in run("sweep study.toml --csv -").err
 
 
-def test_a_settled_cycle_is_a_success(capsys: Capture) -> None:
-    rows = [{"status": status} for status in ("converged", "cycled", "converged")]
-    done = Sweep(3, 0, {}, rows, [1.0] * 3, 1.0)
-    assert not done.unconverged
-    assert done.statuses == {"converged": 2, "cycled": 1}
+@pytest.mark.parametrize("status", list(rf.Status))
+def test_rows_are_solutions_or_not_by_their_status(
+    status: rf.Status, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rows = [
+        dict.fromkeys((*COORDINATES, *OUTCOMES), 1.0)
+        | {"status": end, "key": key, "grid": 6, "warnings": "", "parameters": "{}"}
+        for end, key in (("converged", "a"), (status.value, "b"))
+    ]
+    done = Sweep(0, 2, {}, rows, [1.0, 2.0], 3.0)
+    solved = status in (rf.Status.CONVERGED, rf.Status.CYCLED)
+    assert done.unconverged == ([] if solved else rows[1:])
+    expected = {"converged": 2} if status is rf.Status.CONVERGED else {"converged": 1, status.value: 1}
+    assert done.statuses == expected
+    monkeypatch.setattr(engine, "sweep", lambda *_, **__: done)
+    assert run("sweep study.toml").status == int(not solved)
 
 
-def test_progress_is_for_terminals(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
-    for terminal, shown in ((True, "[3/10], 1 failed 2 min left"), (False, "")):
-        monkeypatch.setattr(sys.stderr, "isatty", lambda terminal=terminal: terminal)
-        line = _Line()
-        line.count(Progress(3, 10, 1, 125.0))
-        line.close()
-        written = capsys.readouterr().err
-        assert (shown in written) if terminal else written == ""
+def test_a_grid_that_is_too_coarse_is_reported() -> None:
+    Path("study.toml").write_text(
+        'scene = "table1-rough"\nrealisations = 3\n[vary]\ngrid = 16\n'
+        "load = [1.0, 70.0]\nlower_rms = 0.8e-6\n"
+    )
+    assert "points: use a finer grid" in " ".join(shown("sweep study.toml --workers 1").split())
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_progress_is_for_terminals(terminal: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stderr", Stream(terminal))
+    line = _Line()
+    line.count(Progress(3, 10, 1, 125.0))
+    line.close()
+    written = sys.stderr.getvalue()
+    assert ("[3/10], 1 failed 2 min left" in written) if terminal else written == ""

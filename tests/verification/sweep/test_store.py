@@ -1,4 +1,4 @@
-"""Stores that are damaged, replaced, linked or held by others: refused in one line, or the right table."""
+"""Stores that are damaged, replaced, linked or held by others: refused by name, or the right table."""
 
 from __future__ import annotations
 
@@ -16,11 +16,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from refimpl.errors import InputError
-from tests.verification.cli.children import STUDY, Ended, one_line, small
-from verification.cli import main
+from tests.verification.cli.children import small
 from verification.sweep import engine, store
 from verification.sweep.export import to_csv
-from verification.sweep.run import execute
+from verification.sweep.run import Row, Run, execute
 from verification.sweep.store import COLUMNS, checksum, files_of, open_store
 
 STORES = small(4)
@@ -82,17 +81,29 @@ DAMAGE: dict[str, Callable[[Path], object]] = {
 }
 
 
+def under_another_key(path: Path) -> None:
+    """Its checksum is right."""
+    connection = sqlite3.connect(path, isolation_level=None)
+    (_, *rest, _), *_ = connection.execute("select * from runs").fetchall()
+    values = ["0" * 32, *rest]
+    connection.execute(
+        f"insert into runs values ({', '.join('?' * (len(values) + 1))})", [*values, checksum(values)]
+    )
+    connection.close()
+
+
+DAMAGE["another key, with its checksum"] = under_another_key
+
+
 @pytest.mark.parametrize("name", DAMAGE)
-def test_a_damaged_store_is_one_line(
-    name: str, whole: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_damaged_store_is_refused_and_left_as_it_is(name: str, whole: Path, tmp_path: Path) -> None:
     path = tmp_path / "s.sqlite"
     shutil.copy(whole, path)
     DAMAGE[name](path)
     before = path.read_bytes()
-    (tmp_path / "study.toml").write_text(STUDY)
-    assert main(["sweep", str(tmp_path / "study.toml"), "--store", str(path)]) == 2
-    one_line(Ended(2, capsys.readouterr().err), "store", 2)
+    with pytest.raises(InputError) as refused:
+        engine.sweep(STORES, path, workers=0)
+    assert (refused.value.field, refused.value.value) == ("store", str(path))
     assert path.read_bytes() == before
 
 
@@ -120,24 +131,49 @@ def test_checksums_tell_values_that_look_alike() -> None:
 
 @pytest.mark.parametrize("end", ["", "-wal", "-shm", "-journal"])
 @pytest.mark.parametrize("make", [os.mkfifo, os.mkdir], ids=["FIFO", "folder"])
-def test_a_store_of_pipes_and_folders_is_refused(
-    end: str, make: Callable[[Path], None], tmp_path: Path
-) -> None:
+def test_pipes_and_folders_are_refused(end: str, make: Callable[[Path], None], tmp_path: Path) -> None:
     path = tmp_path / "s.sqlite"
     make(path.with_name(path.name + end))
-    with pytest.raises(InputError, match="regular file"):
-        engine.sweep(small(1), path, workers=0)
+    with pytest.raises(InputError, match="regular file"), open_store(path):
+        pass
 
 
 def test_a_store_that_may_not_be_opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Mode 000, played by the error of the system call: the tests may run as root, whom no mode stops."""
+    """In no folder, and by the error of the system call: a file mode would not stop root."""
+    with pytest.raises(InputError, match="store"), open_store(tmp_path / "none" / "s.sqlite"):
+        pass
 
     def refuses(*_: object) -> int:
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
 
-    monkeypatch.setattr(store.os, "open", refuses)
-    with pytest.raises(InputError, match="Permission denied"):
-        engine.sweep(small(1), tmp_path / "s.sqlite", workers=0)
+    monkeypatch.setattr(os, "open", refuses)
+    with pytest.raises(InputError, match="Permission denied"), open_store(tmp_path / "s.sqlite"):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("stop", "said"),
+    [("pragma query_only = on", "readonly"), ("pragma max_page_count = 1", "full")],
+    ids=["read-only", "full"],
+)
+def test_a_store_that_can_no_longer_be_written_is_refused(tmp_path: Path, stop: str, said: str) -> None:
+    stopped = f"{stop}; create table t as select zeroblob(100000)"
+    with pytest.raises(InputError, match=said), open_store(tmp_path / "s.sqlite") as kept:
+        kept._connection.executescript(stopped)
+
+
+def test_a_fault_of_the_callers_own_sql_is_no_bad_input(tmp_path: Path) -> None:
+    path = tmp_path / "s.sqlite"
+    with pytest.raises(sqlite3.OperationalError, match="no such table"), open_store(path) as kept:
+        kept._connection.execute("select 1 from nowhere")
+    with open_store(path):  # and the lock is given back
+        pass
+
+
+def test_a_file_whose_creation_was_killed_is_new(tmp_path: Path) -> None:
+    (tmp_path / "s.sqlite").touch()
+    by_sql("pragma journal_mode = wal")(tmp_path / "s.sqlite")
+    assert engine.sweep(small(1), tmp_path / "s.sqlite", workers=0).finished == 1
 
 
 @pytest.mark.parametrize("how", ["exclusive", "immediate"])
@@ -178,13 +214,13 @@ def test_no_link_lets_two_sweeps_in(name: str, tmp_path: Path) -> None:
     assert engine.sweep(small(2), link, workers=0).found == 1
 
 
-def test_deleting_what_lies_beside_it_lets_no_second_sweep_in(tmp_path: Path) -> None:
+def test_a_second_sweep_is_refused_and_readers_are_not(tmp_path: Path) -> None:
     path = tmp_path / "s.sqlite"
+    engine.sweep(small(1), path, workers=0)
     with open_store(path):
-        for file in set(tmp_path.iterdir()) - set(files_of(path)):
-            file.unlink()
         with pytest.raises(InputError, match="no other sweep"):
             engine.sweep(small(1), path, workers=0)
+        assert sqlite3.connect(path).execute("select count(*) from runs").fetchone() == (1,)
 
 
 @pytest.mark.parametrize("again", [False, True], ids=["deleted", "replaced"])
@@ -210,18 +246,31 @@ def test_memory_is_a_name_like_any_other(tmp_path: Path, monkeypatch: pytest.Mon
         assert engine.sweep(small(1), Path(name), workers=0).found == 1
 
 
-def test_a_table_dropped_during_the_sweep(tmp_path: Path) -> None:
-    path, (run,) = tmp_path / "s.sqlite", small(1).runs()
-    row, seconds = execute(run.inputs)
-    with open_store(path) as kept:
-        sqlite3.connect(path, isolation_level=None).execute("drop table runs")
-        with pytest.raises(InputError, match="no such table"):
-            kept.add(run, row, seconds)
-
-
-def test_numbers_that_do_not_exist_are_kept_as_none(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def finished() -> tuple[Run, Row, float]:
+    """A run with its row and its seconds."""
     (run,) = small(1).runs()
-    row, seconds = execute(run.inputs)
+    return run, *execute(run.inputs)
+
+
+def test_a_run_is_kept_once(tmp_path: Path, finished: tuple[Run, Row, float]) -> None:
+    with open_store(tmp_path / "s.sqlite") as kept:
+        kept.add(*finished)
+        with pytest.raises(sqlite3.IntegrityError):
+            kept.add(*finished)
+
+
+def test_a_table_dropped_during_the_sweep(tmp_path: Path, finished: tuple[Run, Row, float]) -> None:
+    with open_store(tmp_path / "s.sqlite") as kept:
+        by_hand = sqlite3.connect(tmp_path / "s.sqlite", isolation_level=None)
+        by_hand.execute("drop table runs")
+        with pytest.raises(InputError, match="no such table"):
+            kept.add(*finished)
+    by_hand.close()
+
+
+def test_numbers_that_do_not_exist_are_kept_as_none(tmp_path: Path, finished: tuple[Run, Row, float]) -> None:
+    run, row, seconds = finished
     with open_store(tmp_path / "s.sqlite") as kept:
         kept.add(run, row | {"friction_coefficient": float("nan")}, seconds)
     with open_store(tmp_path / "s.sqlite") as kept:

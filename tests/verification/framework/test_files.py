@@ -1,0 +1,89 @@
+"""Output files that are whole or as they were, JSON that every reader takes, progress for terminals."""
+
+from __future__ import annotations
+
+import os
+import signal
+import stat
+import sys
+from pathlib import Path
+
+import pytest
+
+from verification.framework import files
+
+
+def test_a_file_is_whole_or_as_it_was(tmp_path: Path) -> None:
+    path = tmp_path / "results.json"
+    files.write_text("old", path)
+
+    def break_off() -> None:
+        with files.replacing(path) as temporary:
+            temporary.write_text("half of the n")
+            raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        break_off()
+    assert path.read_text() == "old"
+    with files.replacing(path) as first:  # while another writes
+        first.write_text("first")
+        files.write_text("second", path)
+        assert first.read_text() == "first"
+    assert path.read_text() == "first"
+    assert [p.name for p in tmp_path.iterdir()] == ["results.json"]
+
+
+def test_the_next_write_removes_what_a_killed_writer_left(tmp_path: Path) -> None:
+    target = tmp_path / "s.json"
+    target.write_text("old")
+    child = os.fork()
+    if child == 0:
+        with files.replacing(target) as temporary:
+            temporary.write_text("half")
+            os.kill(os.getpid(), signal.SIGKILL)
+    os.waitpid(child, 0)
+    assert target.read_text() == "old"
+    files.write_text("new", target)
+    assert [path.name for path in tmp_path.iterdir()] == ["s.json"]
+
+
+def test_a_link_keeps_leading_to_the_file_that_is_written(tmp_path: Path) -> None:
+    """/dev/stdout is one."""
+    target, link = tmp_path / "target.json", tmp_path / "link.json"
+    target.write_text("old")
+    link.symlink_to(target)
+    files.write_text("new", link)
+    assert link.is_symlink()
+    assert target.read_text() == "new"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["link.json", "target.json"]
+
+
+@pytest.mark.parametrize(("umask", "kept"), [(0o022, 0o600), (0o077, 0o664)])
+def test_a_new_file_has_the_mode_of_the_umask_and_a_replaced_one_its_own(
+    tmp_path: Path, umask: int, kept: int
+) -> None:
+    path, before = tmp_path / "a.json", os.umask(umask)
+    try:
+        files.write_text("new", path)
+    finally:
+        assert os.umask(before) == umask
+    assert stat.S_IMODE(path.stat().st_mode) == 0o666 & ~umask
+    path.chmod(kept)
+    files.write_text("newer", path)
+    assert (path.read_text(), stat.S_IMODE(path.stat().st_mode)) == ("newer", kept)
+
+
+def test_json_refuses_what_json_does_not_have() -> None:
+    with pytest.raises(ValueError):
+        files.to_json({"x": float("nan")})
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_progress_is_for_terminals(
+    terminal: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
+    progress = files.Progress(3)
+    progress.tick("pass  a/b")
+    progress.close()
+    assert ("[1/3] pass  a/b" in capsys.readouterr().err) is terminal
