@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from refimpl.accuracy.discretisation_error import EDGE_SIZE, PEAK_BIAS
+from refimpl.accuracy.contact_edge import EDGE_SIZE
+from refimpl.accuracy.discretisation_error import PEAK_BIAS
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.peak import NO_PEAK, Peak
 from refimpl.grid import Grid

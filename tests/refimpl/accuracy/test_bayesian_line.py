@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from scipy import optimize, stats
 
 from refimpl.accuracy.bayesian_line import Bias, Estimate, Prior, fit_line
+from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD
 from refimpl.accuracy.digits import bar_of, digits_of, usable, verdict
-from refimpl.accuracy.discretisation_error import AREA, EDGE_SIZE, EDGE_SIZE_SPREAD
+from refimpl.accuracy.discretisation_error import AREA
 from refimpl.grid import Array
 
 

@@ -262,6 +262,7 @@ def test_the_active_set_does_not_depend_on_the_start(seed: int, start: int, obli
 def test_the_active_set_is_that_of_the_dense_reference(seed: int) -> None:
     """And excluded elements; scenes whose contact edge cannot keep tau, on this grid or finer ones."""
     by_fft, dense = (rf.solve(study.random_scene(seed).scene, 32, method=m) for m in ("fft", "dense"))
+    assert by_fft.status is dense.status
     assert np.array_equal(by_fft.excluded, dense.excluded)
     assert np.array_equal(by_fft.traction > 0, dense.traction > 0)
     assert by_fft.friction_coefficient == pytest.approx(dense.friction_coefficient, rel=1e-8)
