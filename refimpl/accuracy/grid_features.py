@@ -45,7 +45,7 @@ class GridFeatures:
     rms_slope : root mean square slope, weighted by pressure
     slope_displacement_error : how far differenced slopes leave displacements along the vertical open (m)
     highest_areas : contact area (m^2) of at least k/16 of the maximum pressure, k = 0 to 16
-    cap : hardness (Pa), infinite without one
+    hardness : largest pressure (Pa), None without
     loaded : whether the load is prescribed, which then has no discretisation error, or the approach
     """
 
@@ -67,7 +67,7 @@ class GridFeatures:
     rms_slope: float = 0.0
     slope_displacement_error: float = 0.0
     highest_areas: tuple[float, ...] = ()
-    cap: float = math.inf
+    hardness: float | None = None
     loaded: bool = True
 
     @property
@@ -134,7 +134,7 @@ class GridFeatures:
             rms_slope=math.sqrt(state.slopes.mean_square(state.pressure)),
             slope_displacement_error=slope_displacement_error(problem, state),
             highest_areas=highest_areas(state.pressure, grid),
-            cap=problem.cap,
+            hardness=problem.cap if math.isfinite(problem.cap) else None,
             loaded=problem.load is not None,
         )
         return replace(features, numbers=dict(features.numbers) | features.corrected)

@@ -11,7 +11,6 @@ from reports.drawing import COLOURS, INK, Data, Figure, look
 from reports.exhibit import Column, Document, Exhibit, Table, table
 
 NAMES = {
-    "friction_coefficient_corrected": "mu, corrected",
     "friction_coefficient": "mu",
     "contact_area": "A",
     "contact_area_corrected": "A, corrected",

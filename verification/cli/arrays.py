@@ -28,14 +28,17 @@ def require_netcdf(netcdf: Path | None) -> None:
 
 
 def write_npz(solution: Solution, path: Path) -> None:
-    """Write the fields, ``x`` and ``y`` (m), and ``attributes``: units, numbers and provenance as JSON."""
+    """Write the fields, ``x`` and ``y`` (m), and ``attributes``: units, numbers and provenance as JSON.
+
+    A bar without an end is null there.
+    """
     import numpy as np
 
     from refimpl.solution.arrays import attributes_of, fields_of
     from verification.framework.files import replacing, to_json
 
     fields = fields_of(solution)
-    attributes = {**attributes_of(solution, _provenance()), "units": {n: f.unit for n, f in fields.items()}}
+    attributes = plain({**attributes_of(solution, _provenance()), "units": {n: f.unit for n, f in fields.items()}})
     arrays: dict[str, Any] = {name: field.values for name, field in fields.items()}
     with replacing(path) as temporary, temporary.open("wb") as file:
         np.savez_compressed(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from itertools import product
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -88,12 +87,16 @@ def lay_ratio(one: rf.Scene) -> float | None:
 
 
 OF_EVERY_CLASS = [
-    ("slenderness", lambda one: slenderness(one) if slenderness(one) > 1 else None, 1, 3),
     ("E, upper", lambda one: one.upper.material.E, 2e9, 400e9),
     ("E, lower", lambda one: one.lower.material.E, 2e9, 400e9),
     ("nu, upper", lambda one: one.upper.material.nu, 0.1, 0.49, False),
     ("nu, lower", lambda one: one.lower.material.nu, 0.1, 0.49, False),
     ("beta", lambda one: one.friction.beta, 0.01, 0.3),
+]
+USUAL = [kind for kind in CLASSES if "lay" in kind]
+USUAL += ["isotropic", "grooves", "self-affine", "capped", "facets"]
+OF_USUAL_CLASSES = [
+    ("slenderness", lambda one: slenderness(one) if slenderness(one) > 1 else None, 1, 3),
     ("tau", lambda one: one.friction.tau / pressure(one), 0.01, 0.3),
     ("share in contact", share_of_plane, 0.05, 0.6),
     ("a / side", radius_share, 0.1, 0.3),
@@ -102,6 +105,21 @@ OF_EVERY_CLASS = [
 LAYS = [kind for kind in CLASSES if "lay" in kind]
 RANGES = [
     *(Range(kind, *row) for kind in CLASSES for row in OF_EVERY_CLASS),
+    *(Range(kind, *row) for kind in USUAL for row in OF_USUAL_CLASSES),
+    Range("nearly full", "share in contact", share_of_plane, 1.5, 5),
+    Range("few elements", "a / side", radius_share, 0.02, 0.06),
+    Range("few elements", "R / a", lambda one: np.divide(*contact_radius(one)), 50, 1000),
+    Range("ball on data", "a / side", radius_share, 0.1, 0.3),
+    Range(
+        "few asperities",
+        "length",
+        lambda one: roughness(one).correlation_length / min(one.lengths),
+        0.25,
+        0.45,
+    ),
+    Range(
+        "4:1 rectangles", "length", lambda one: roughness(one).correlation_length / min(one.lengths), 0.2, 0.6
+    ),
     *(
         Range(kind, "length", lambda one: roughness(one).correlation_length / min(one.lengths), 0.05, 0.25)
         for kind in ("isotropic", "capped")
@@ -123,7 +141,21 @@ def test_draws_fill_the_range_of_their_class(one: Range) -> None:
     assert one.filled_by(DRAWN[one.kind])
 
 
-@pytest.mark.parametrize("kind", CLASSES)
+def test_domains_of_the_other_classes() -> None:
+    """Whole-number directions on squares, rectangles of 4, a free plane that ends at the border, full planes."""
+    strips, cut_off = DRAWN["strips between the axes"], DRAWN["cut off by the border"]
+    assert {slenderness(one) for one in strips} == {1.0}
+    assert {abs(roughness(one).numbers[0]) for one in strips} == {1, 2, 3, 4, 6}
+    assert all(all(roughness(one).numbers) for one in strips)
+    assert {slenderness(one) for one in DRAWN["4:1 rectangles"]} == {4.0}
+    assert {one.periodic for one in cut_off} == {False}
+    assert {type(part) for one in cut_off for part in one.parts("upper")} == {rf.Flat}
+    assert all(one.periodic for one in DRAWN["nearly full"])
+    assert all(roughness(one).zigzag for one in DRAWN["facets"])
+    assert not any(one.periodic for kind in ("few elements", "ball on data") for one in DRAWN[kind])
+
+
+@pytest.mark.parametrize("kind", USUAL)
 def test_domains_and_hardness(kind: str) -> None:
     """One side is 1 mm long, the other at most that. Only the capped class yields, at no less than twice the
     mean pressure on the domain and 0.7 of the pressure in contact."""
@@ -149,7 +181,7 @@ def test_directions_of_lays_and_numbers_of_grooves() -> None:
         assert {round(math.degrees(one.sliding_direction)) for one in drawn} == {0, 90, 180, 270}
     assert max(lay_lengths(one)[0] for kind in LAYS for one in DRAWN[kind]) <= 0.9 + 1e-12
     waves = [roughness(one) for one in DRAWN["grooves"]]
-    assert {(wave.number, wave.axis) for wave in waves} == set(product((1, 2, 3, 4), (0, 1)))
+    assert {wave.numbers for wave in waves} == {(n, 0) for n in (1, 2, 3, 4)} | {(0, n) for n in (1, 2, 3, 4)}
 
 
 class Told:
