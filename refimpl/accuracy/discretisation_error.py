@@ -126,12 +126,13 @@ def estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
 
 def _area_that_may_yield(fine: GridFeatures, peak: Estimate) -> float:
     """The area (m^2) of elements whose pressure is within the maximum's error of the hardness."""
-    top = fine.numbers["max_pressure"]
-    missing = fine.cap - top
-    error = peak.error_bound(top)
-    if math.isinf(fine.cap) or missing > error:
+    if fine.hardness is None:
         return 0.0
-    level = max(0.0, (fine.cap - error) / top)
+    top = fine.numbers["max_pressure"]
+    error = peak.error_bound(top)
+    if top + error < fine.hardness:
+        return 0.0
+    level = max(0.0, (fine.hardness - error) / top)
     return fine.highest_areas[int(level * (len(fine.highest_areas) - 1))]
 
 

@@ -35,10 +35,12 @@ def write_npz(solution: Solution, path: Path) -> None:
     import numpy as np
 
     from refimpl.solution.arrays import attributes_of, fields_of
+    from verification.cli.output import plain
     from verification.framework.files import replacing, to_json
 
     fields = fields_of(solution)
-    attributes = plain({**attributes_of(solution, _provenance()), "units": {n: f.unit for n, f in fields.items()}})
+    units = {name: field.unit for name, field in fields.items()}
+    attributes = plain({**attributes_of(solution, _provenance()), "units": units})
     arrays: dict[str, Any] = {name: field.values for name, field in fields.items()}
     with replacing(path) as temporary, temporary.open("wb") as file:
         np.savez_compressed(

@@ -238,11 +238,11 @@ def test_under_a_load_only_the_approach_hangs_on_the_touch() -> None:
 
 
 def test_a_touch_that_nothing_is_known_of_leaves_everything_open() -> None:
-    lone = replace(pressed(64), first_contact=Peak(0.0, 1e-9, 1.0), cap=2e9)
+    lone = replace(pressed(64), first_contact=Peak(0.0, 1e-9, 1.0), hardness=2e9)
     assert math.isinf(first_contact_error(lone))
     assert all(math.isinf(bound) for bound in first_contact_bounds(lone).values())
     assert all(math.isinf(estimate.half_width) for estimate in estimates([lone]).values())
-    without_hardness = estimates([replace(lone, cap=math.inf)])
+    without_hardness = estimates([replace(lone, hardness=math.inf)])
     assert {name for name, e in without_hardness.items() if e.half_width == 0} == {"plastic_area"}
 
 

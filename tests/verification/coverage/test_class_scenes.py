@@ -142,7 +142,7 @@ def test_draws_fill_the_range_of_their_class(one: Range) -> None:
 
 
 def test_domains_of_the_other_classes() -> None:
-    """Whole-number directions on squares, rectangles of 4, a free plane that ends at the border, full planes."""
+    """Strips on squares, rectangles of 4, a free plane that ends at the border, full planes."""
     strips, cut_off = DRAWN["strips between the axes"], DRAWN["cut off by the border"]
     assert {slenderness(one) for one in strips} == {1.0}
     assert {abs(roughness(one).numbers[0]) for one in strips} == {1, 2, 3, 4, 6}

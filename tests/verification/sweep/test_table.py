@@ -71,7 +71,7 @@ def test_each_outcome_of_a_row() -> None:
     }
     row = outcome(replace(s, uncertainty=parts, certificate=replace(s.certificate, gap=0.125)), scene)
     same = "friction_coefficient contact_area contact_area_corrected max_pressure approach normal_force"
-    same += " friction_force binormal_force"
+    same += " friction_force binormal_force friction_coefficient_corrected friction_force_corrected"
     pushed = s.pressure * np.sin(s.theta_x) * np.cos(s.theta_y)
     border = np.ones((16, 16), dtype=bool)
     border[1:-1, 1:-1] = False
@@ -167,10 +167,13 @@ def test_the_unit_of_every_column() -> None:
 # --- error bars, scatter, curves ---
 
 
+MU = "friction_coefficient_corrected"
+
+
 def row(realisation: int, mu: float, area: float = 1.0, **others: object) -> Row:
     """A row whose errors are 0.01 of mu and unbounded for A."""
-    made = {"realisation": realisation, "status": "converged", "friction_coefficient": mu, "warnings": ""}
-    made |= {"friction_coefficient_error": 0.01, "contact_area": area, "contact_area_error": math.inf}
+    made = {"realisation": realisation, "status": "converged", MU: mu, "warnings": ""}
+    made |= {f"{MU}_error": 0.01, "contact_area": area, "contact_area_error": math.inf}
     return dict.fromkeys(COORDINATES) | made | others
 
 
@@ -206,16 +209,16 @@ def test_seeds_are_realisations_of_one_point_and_warnings_are_counted() -> None:
 def test_points_of_a_curve() -> None:
     rows = [
         row(0, 0.1, load=1.0),
-        row(1, 0.3, load=1.0, friction_coefficient_error=0.03),
+        row(1, 0.3, load=1.0, **{f"{MU}_error": 0.03}),
         row(0, 0.2, load=2.0),
     ]
-    first, second = curves(rows, "load", "friction_coefficient")[None]
+    first, second = curves(rows, "load", MU)[None]
     assert (first.x, first.realisations, second.realisations) == (1.0, 2, 1)
     assert (first.mean, first.scatter, first.error) == pytest.approx((0.2, math.sqrt(0.02), 0.02))
     assert second == Point(2.0, 0.2, 0.0, 0.01, 1)
     assert curves(rows, "load", "contact_area")[None][0].error == math.inf
-    unbounded = [one | {"friction_coefficient_error": None} for one in rows]  # as a store keeps it
-    assert curves(unbounded, "load", "friction_coefficient")[None][1].error == math.inf
+    unbounded = [one | {f"{MU}_error": None} for one in rows]  # as a store keeps it
+    assert curves(unbounded, "load", MU)[None][1].error == math.inf
     with pytest.raises(InputError, match="--x"):
         curves(rows, "status", "contact_area")
 
