@@ -45,7 +45,7 @@ class GridFeatures:
     rms_slope : root mean square slope, weighted by pressure
     slope_displacement_error : how far differenced slopes leave displacements along the vertical open (m)
     highest_areas : contact area (m^2) of at least k/16 of the maximum pressure, k = 0 to 16
-    hardness : largest pressure (Pa), None without
+    hardness : Pa, None without one
     loaded : whether the load is prescribed, which then has no discretisation error, or the approach
     """
 

@@ -242,7 +242,7 @@ def test_a_touch_that_nothing_is_known_of_leaves_everything_open() -> None:
     assert math.isinf(first_contact_error(lone))
     assert all(math.isinf(bound) for bound in first_contact_bounds(lone).values())
     assert all(math.isinf(estimate.half_width) for estimate in estimates([lone]).values())
-    without_hardness = estimates([replace(lone, hardness=math.inf)])
+    without_hardness = estimates([replace(lone, hardness=None)])
     assert {name for name, e in without_hardness.items() if e.half_width == 0} == {"plastic_area"}
 
 
