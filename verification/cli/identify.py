@@ -10,12 +10,10 @@ from typing import TYPE_CHECKING
 from verification.cli.options import (
     SCENE,
     Options,
-    Parsers,
     loads,
     names,
     option,
     output_file,
-    subcommand,
 )
 from verification.cli.output import (
     PICTURES,
@@ -54,19 +52,6 @@ OPTIONS: Options = {
     "--store": option("keep finished solves there, and go on", metavar="FILE.json", type=output_file),
     "--plot": option("draw data, fit, ellipse and residuals", metavar="FILE.png", type=output_file),
 }
-
-
-def add_parser(commands: Parsers) -> None:
-    """Declare the subcommand."""
-    subcommand(
-        commands,
-        "identify",
-        run,
-        OPTIONS,
-        help="find tau and beta from friction measured at several loads",
-        description="Find tau and beta, with 95 % intervals, from friction measured at several loads.",
-        epilog=EPILOG,
-    )
 
 
 def run(options: argparse.Namespace) -> int:

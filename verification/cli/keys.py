@@ -10,7 +10,7 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.options import Options, Parsers, option, output_text, subcommand
+from verification.cli.options import Options, option, output_text
 from verification.cli.output import check_outputs, columns, emit, show
 
 if TYPE_CHECKING:
@@ -30,19 +30,6 @@ OPTIONS: Options = {
     "word": option("keys with this word in them", metavar="WORD", nargs="?", default=""),
     "--markdown": option("write the page of all keys", metavar="FILE", type=output_text),
 }
-
-
-def add_parser(commands: Parsers) -> None:
-    """Declare the subcommand."""
-    subcommand(
-        commands,
-        "keys",
-        run,
-        OPTIONS,
-        help="every key of scene and study files: type, unit, default, allowed values, meaning",
-        description="Print the keys of scene and study files, or write them as a page.",
-        epilog=EPILOG,
-    )
 
 
 def run(options: argparse.Namespace) -> int:

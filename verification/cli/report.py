@@ -10,7 +10,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from verification.cli.options import Options, Parsers, option, subcommand
+from verification.cli.options import Options, option
 from verification.cli.output import StatusLine, check_outputs, columns, emit
 from verification.cli.pdf import PAPERS, compacts, printed
 
@@ -28,20 +28,6 @@ OPTIONS: Options = {
     "--pdf": option("also print it to PDF, by an installed Chromium", action="store_true"),
     "--paper": option("size of paper (default a4)", choices=sorted(PAPERS), default="a4"),
 }
-
-
-def add_parser(commands: Parsers) -> None:
-    """Declare the subcommand."""
-    subcommand(
-        commands,
-        "report",
-        run,
-        OPTIONS,
-        help="make the validation report",
-        description="Make the validation report, one HTML file, from a result file of 'verify' and the\n"
-        "committed results of long cases and studies.",
-        epilog=EPILOG,
-    )
 
 
 def run(options: argparse.Namespace) -> int:

@@ -10,14 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 from verification.cli.options import (
     Options,
-    Parsers,
     elements,
     gigabytes,
     lengths,
     on_or_off,
     option,
     output_file,
-    subcommand,
 )
 from verification.cli.output import (
     PICTURES,
@@ -71,6 +69,7 @@ PASSED_ON = ("grid", "accuracy", "quantity", "method", "approach", "tolerance")
 LIMITS = ("max_grid", "max_seconds", "max_memory")
 SWITCHES = ("coupled", "oblique", "tilted", "slope_correction", "plastic")
 
+ONE_OF = ("--grid", "--accuracy")
 OPTIONS: Options = {
     "scene": option("a scene's TOML file, or the name of a shipped scene", metavar="SCENE"),
     "--grid": option(
@@ -125,20 +124,6 @@ OPTIONS: Options = {
     "--netcdf": option("the same as NetCDF, for xarray", metavar="FILE.nc", type=output_file),
     "--patches": option("table of contact patches as CSV", metavar="FILE.csv", type=output_file),
 }
-
-
-def add_parser(commands: Parsers) -> None:
-    """Declare the subcommand."""
-    subcommand(
-        commands,
-        "solve",
-        run,
-        OPTIONS,
-        one_of=("--grid", "--accuracy"),
-        help="solve a scene",
-        description="Solve a scene: friction, contact area, pressures, and how well it converged.",
-        epilog=EPILOG,
-    )
 
 
 def run(options: argparse.Namespace) -> int:

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.options import Options, Parsers, option, output_file, output_text, subcommand
+from verification.cli.options import Options, option, output_file, output_text
 from verification.cli.output import (
     PICTURES,
     StatusLine,
@@ -67,19 +67,6 @@ OPTIONS: Options = {
     ),
     "--by": option("with --plot: the column that tells curves apart", metavar="COLUMN"),
 }
-
-
-def add_parser(commands: Parsers) -> None:
-    """Declare the subcommand."""
-    subcommand(
-        commands,
-        "sweep",
-        run,
-        OPTIONS,
-        help="solve the runs of a study: realisations x roughness x load x direction x grid",
-        description="Solve the runs of a study in worker processes, resumably, and export the table.",
-        epilog=EPILOG,
-    )
 
 
 def run(options: argparse.Namespace) -> int:

@@ -5,21 +5,15 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from verification.cli.options import SCENE, Options, Parsers, grids, option, subcommand
+from verification.cli.options import SCENE, Options, grids, option
 from verification.cli.output import check_outputs, emit, files_of
 
-TEXT = "the cost-accuracy table of a scene: grid and seconds for an error in mu, A or p_max"
 EPILOG = "examples:\n  rough-friction tradeoff table1-rough --grids 64,128,256 --reference 1024"
 OPTIONS: Options = {
     "scene": SCENE,
     "--grids": option("default 32,64,128,256", metavar="M,M,...", type=grids, default=[32, 64, 128, 256]),
     "--reference": option("grid of the reference", metavar="M", type=int, default=1024),
 }
-
-
-def add_parser(commands: Parsers) -> None:
-    """Declare the subcommand."""
-    subcommand(commands, "tradeoff", run, OPTIONS, help=TEXT, description=f"Print {TEXT}.", epilog=EPILOG)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from verification.cli import contestant, export
-from verification.cli.options import Options, Parsers, option, subcommand
+from verification.cli.options import Options, option
 from verification.cli.output import columns, emit, judgement, select_or_refuse
 
 if TYPE_CHECKING:
@@ -37,20 +37,6 @@ OPTIONS: Options = {
         type=Path,
     ),
 }
-
-
-def add_parser(commands: Parsers) -> None:
-    """Declare the subcommand."""
-    parser = subcommand(
-        commands,
-        "verify",
-        run,
-        OPTIONS,
-        help="run the verification cases",
-        description="Run the verification cases. A case that could not run is never a pass.",
-        epilog=EPILOG,
-    )
-    contestant.add_options(parser)
 
 
 def run(options: argparse.Namespace) -> int:
