@@ -76,7 +76,7 @@ class Parser(argparse.ArgumentParser):
 
 def parser() -> argparse.ArgumentParser:
     """The whole command line."""
-    top = Parser(
+    top: argparse.ArgumentParser = Parser(
         prog="rough-friction",
         description="Friction between rough elastic surfaces: solve scenes, verify the solvers, report.",
         epilog=EPILOG,

@@ -13,7 +13,7 @@ from typing import Any
 
 from verification.cli import appendix_tables, half_space
 from verification.cli.options import Options, Parsers, declare, number, numbers, option, subcommand
-from verification.cli.output import columns, emit
+from verification.cli.output import columns, emit, refusal
 
 # A table is of a slope's square, so none of zero; half a period of positions is all, the rest is its mirror.
 MAP_RANGES = {
@@ -141,11 +141,10 @@ def coefficient_map(options: argparse.Namespace) -> int:
     """The versioned table of the error of flat coefficients, every Poisson ratio in it."""
     from appendix_a.fem.coefficient_map import check_complete
     from appendix_a.fem.map2d import POSITIONS, SLOPES_DEG, WAVELENGTHS, compute
-    from refimpl.errors import InputError
     from verification.framework.files import Progress
 
     if options.jobs < 1:
-        raise InputError("--jobs", options.jobs, "at least one worker process")
+        raise refusal("--jobs", options.jobs, "at least one worker process")
     axes = {
         "slopes-deg": tuple(options.slopes_deg or SLOPES_DEG),
         "wavelengths": tuple(options.wavelengths or WAVELENGTHS),
@@ -154,7 +153,7 @@ def coefficient_map(options: argparse.Namespace) -> int:
     for name, (low, high, unit) in MAP_RANGES.items():
         for value in axes[name]:
             if not low <= value <= high:
-                raise InputError(f"--{name}", value, f"{low:g} to {high:g} {unit}")
+                raise refusal(f"--{name}", value, f"{low:g} to {high:g} {unit}")
     with _by_option(**{field: (name, axes[name], "") for field, name in AXIS_OPTIONS.items()}):
         check_complete(*axes.values())
     progress = Progress(len(axes["slopes-deg"]) * len(axes["wavelengths"]))
@@ -212,14 +211,12 @@ def wedge(options: argparse.Namespace) -> int:
 
 def _refuse_angles(options: argparse.Namespace) -> None:
     """In degrees, as they were typed, what `appendix_a.wedge` would refuse in radians."""
-    from refimpl.errors import InputError
-
     if not 0 <= options.gamma_deg < 90:
-        raise InputError("--gamma-deg", options.gamma_deg, "a slope angle of 0 to below 90 degrees")
+        raise refusal("--gamma-deg", options.gamma_deg, "a slope angle of 0 to below 90 degrees")
     face = 90 - options.gamma_deg
     for theta in options.theta_deg:
         if abs(theta) > face + FACE_SLACK_DEG:
-            raise InputError("--theta-deg", theta, f"angles within the faces at +-{face:g} degrees")
+            raise refusal("--theta-deg", theta, f"angles within the faces at +-{face:g} degrees")
 
 
 @contextmanager

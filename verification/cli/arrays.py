@@ -7,6 +7,8 @@ import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from verification.cli.output import refusal
+
 if TYPE_CHECKING:
     from refimpl import Solution
 
@@ -16,15 +18,13 @@ PATCH_UNITS = {"area": "m^2", "load": "N", "mean_pressure": "Pa", "max_pressure"
 
 def require_netcdf(netcdf: Path | None) -> None:
     """Refuse, before any work, NetCDF without its library. Raises InputError."""
-    from refimpl.errors import InputError
-
     if netcdf is not None:
         try:
             import h5netcdf  # noqa: F401  # only whether it is there
             import xarray  # noqa: F401
         except ModuleNotFoundError as missing:
             allowed = "xarray and h5netcdf installed (in a checkout: pip install '.[arrays]'), or --npz"
-            raise InputError("--netcdf", str(netcdf), allowed) from missing
+            raise refusal("--netcdf", str(netcdf), allowed) from missing
 
 
 def write_npz(solution: Solution, path: Path) -> None:

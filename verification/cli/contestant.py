@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from verification.cli import contestant_report, suite_table
 from verification.cli.contestant_report import Judged
 from verification.cli.options import Options, declare, option, output_file
-from verification.cli.output import check_suffix, columns, emit, select_or_refuse
+from verification.cli.output import check_suffix, columns, emit, refusal, select_or_refuse
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -74,13 +74,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def chosen(options: argparse.Namespace) -> bool:
     """True if a solver is named. Raises `InputError` for its options without one."""
-    from refimpl.errors import InputError
-
     if options.solver is not None or options.exec is not None:
         return True
     for name in OPTIONS:
         if (value := getattr(options, name.removeprefix("--"))) is not None:
-            raise InputError(name, value, "nothing without --solver or --exec")
+            raise refusal(name, value, "nothing without --solver or --exec")
     return False
 
 
@@ -108,12 +106,11 @@ def run(options: argparse.Namespace) -> int:
 
 def _among(options: argparse.Namespace) -> tuple[Check, ...]:
     """The suite, with further problems, or the limits and orders in its place."""
-    from refimpl.errors import InputError
     from verification.solver_suite import convergence, suite
 
     if options.discretisation == "other":
         if options.thorough:
-            raise InputError("--thorough", True, "nothing beside --discretisation other")
+            raise refusal("--thorough", True, "nothing beside --discretisation other")
         return convergence.CASES
     return suite.thorough() if options.thorough else suite.suite()
 

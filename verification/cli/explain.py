@@ -55,7 +55,12 @@ def _forecast(options: Options, expected: Forecast | None) -> list[list[str]]:
 
 def document(options: Options, plan: Plan, scene: str, expected: Forecast | None = None) -> dict[str, object]:
     """Return the plan for JSON, in SI units; one number of elements is that along the longer side."""
-    resolved = _resolution(options, plan)
+    resolved = resolution(options.scene, plan.grid, plan.demand)
+    forecast: dict[str, object] | None = None
+    if expected is not None:
+        numbers = {name: getattr(expected, name) for name in ("seconds", "memory", "refusal")}
+        solved = [list(grid.shape) for grid in expected.solved]
+        forecast = {"grid": list(expected.grid.shape), **numbers, "solved": solved}
     return {
         "scene": scene,
         "method": plan.method,
@@ -67,37 +72,13 @@ def document(options: Options, plan: Plan, scene: str, expected: Forecast | None
         "expected": asdict(plan.contact),
         "resolution": None if resolved is None else asdict(resolved),
         "memory": plan.memory,
-        "forecast": None if expected is None else _forecast_document(expected),
-    }
-
-
-def _forecast_document(expected: Forecast) -> dict[str, object]:
-    return {
-        "grid": list(expected.grid.shape),
-        "seconds": expected.seconds,
-        "memory": expected.memory,
-        "refusal": expected.refusal,
-        "solved": [list(grid.shape) for grid in expected.solved],
+        "forecast": forecast,
     }
 
 
 def _row(term: Term) -> list[str]:
-    effect = term.effect
-    return [
-        term.label,
-        "in" if term.included else "out",
-        _size(effect.friction),
-        _size(effect.area),
-        term.reason,
-    ]
-
-
-def _size(change: float) -> str:
-    return f"{change:.1e}" if change else "0"
-
-
-def _resolution(options: Options, plan: Plan) -> Resolution | None:
-    return resolution(options.scene, plan.grid, plan.demand)
+    sizes = (f"{change:.1e}" if change else "0" for change in (term.effect.friction, term.effect.area))
+    return [term.label, "in" if term.included else "out", *sizes, term.reason]
 
 
 def _resolved(resolved: Resolution, *, refined: bool) -> str:
@@ -120,7 +101,7 @@ def _expectations(options: Options, plan: Plan) -> list[list[str]]:
         ["half-turn symmetry", "yes: effects of odd order vanish" if contact.symmetric else "none"],
     ]
     refined = options.grid is None
-    if (resolved := _resolution(options, plan)) is not None:
+    if (resolved := resolution(options.scene, grid, plan.demand)) is not None:
         rows.append([f"elements per {resolved.detail.name}", _resolved(resolved, refined=refined)])
     slope, error = expected_error(discretise(options.scene, grid))
     if error > ALLOWED:

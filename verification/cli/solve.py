@@ -26,6 +26,7 @@ from verification.cli.output import (
     emit_early,
     files_of,
     plain,
+    refusal,
     wrapped,
 )
 from verification.cli.solve_table import document, show_finished, table
@@ -128,7 +129,6 @@ OPTIONS: Options = {
 
 def run(options: argparse.Namespace) -> int:
     """Solve and show; status 1 when the certificate does not meet the tolerance, or nothing touches."""
-    from refimpl.errors import InputError
     from refimpl.scene.scene_file import read_tolerances
 
     scene = _read_scene(options)
@@ -138,9 +138,7 @@ def run(options: argparse.Namespace) -> int:
     if options.explain:
         return _explain(scene, options, keywords)
     if options.budget and options.approach is not None:
-        raise InputError(
-            "--approach", options.approach, "none with --budget, which is about the scene's load"
-        )
+        raise refusal("--approach", options.approach, "none with --budget, which is about the scene's load")
     tolerances = read_tolerances(options.scene)
     solution = _solved(scene, options, keywords)
     _write_files(solution, scene, options)
@@ -240,11 +238,9 @@ def _with_budget(
 
 def _refuse_ignored(options: argparse.Namespace) -> None:
     """Refuse an option that the others leave without a meaning, rather than ignore it."""
-    from refimpl.errors import InputError
-
     if options.quantity is not None and options.accuracy is None:
-        raise InputError("--quantity", options.quantity, "none without --accuracy, which it is about")
+        raise refusal("--quantity", options.quantity, "none without --accuracy, which it is about")
     for name in (*FILES, "budget", "strict") if options.explain else ():
         if value := getattr(options, name):
             shown = str(value) if isinstance(value, Path) else value
-            raise InputError(f"--{name}", shown, "none with --explain, which does not solve the scene")
+            raise refusal(f"--{name}", shown, "none with --explain, which does not solve the scene")

@@ -131,8 +131,9 @@ def sweep(
                 else:
                     failures[run.key] = f"{type(failure).__name__}: {failure}"
                 meter.count(run, failed=failure is not None)
-        rows, spent = list(kept.rows(runs)), list(kept.seconds(runs))
+        finished = list(kept.finished(runs))
     found = len(runs) - len(missing)
+    rows, spent = [row for row, _ in finished], [took for _, took in finished]
     return Sweep(found, len(missing) - len(failures), failures, rows, spent, time.perf_counter() - started)
 
 
