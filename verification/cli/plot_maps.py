@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -80,11 +81,10 @@ def view_of(solution: Solution) -> View:
     import numpy as np
 
     grid = solution.grid
-    first, last = zip(
-        *(_range(np.flatnonzero(solution.contact.any(axis=1 - k)), grid.shape[k]) for k in (0, 1)),
-        strict=True,
-    )
-    first, last = _widened(first, last, grid.shape, grid.spacings)
+    first, last = (0, 0), grid.shape
+    if solution.contact.any():
+        places = np.argwhere(solution.contact)
+        first, last = _widened(places.min(axis=0), places.max(axis=0) + 1, grid.shape, grid.spacings)
     share = math.prod(b - a for a, b in zip(first, last, strict=True)) / grid.elements
     whole = share >= MOST_OF_DOMAIN
     if whole:
@@ -143,18 +143,12 @@ def pooled(field: NDArray[Any], *, lowest: bool = False, most: int = MOST_CELLS)
     return found, step
 
 
-def _range(occupied: NDArray[Any], count: int) -> tuple[int, int]:
-    return (int(occupied[0]), int(occupied[-1]) + 1) if len(occupied) else (0, count)
-
-
-def _sides(
-    first: tuple[int, ...], last: tuple[int, ...], spacings: tuple[float, float]
-) -> tuple[float, float]:
+def _sides(first: Sequence[int], last: Sequence[int], spacings: tuple[float, float]) -> tuple[float, float]:
     return (last[0] - first[0]) * spacings[0], (last[1] - first[1]) * spacings[1]
 
 
 def _widened(
-    first: tuple[int, ...], last: tuple[int, ...], shape: tuple[int, int], spacings: tuple[float, float]
+    first: Sequence[int], last: Sequence[int], shape: tuple[int, int], spacings: tuple[float, float]
 ) -> tuple[tuple[int, int], tuple[int, int]]:
     """The ranges with a margin; the shorter side is a third of the longer, where the domain allows."""
     sides = _sides(first, last, spacings)

@@ -202,18 +202,13 @@ def _solved(scene: Scene, options: argparse.Namespace, keywords: Mapping[str, An
 
 
 def _write_files(solution: Solution, scene: Scene, options: argparse.Namespace) -> None:
-    from verification.cli import arrays, plot, vtk
+    from verification.cli import arrays, plot
 
     if options.plot is not None:
         plot.draw(solution, scene, options.plot)
-    if options.vtk is not None:
-        vtk.write(solution, options.vtk)
-    if options.npz is not None:
-        arrays.write_npz(solution, options.npz)
-    if options.netcdf is not None:
-        arrays.write_netcdf(solution, options.netcdf)
-    if options.patches is not None:
-        arrays.write_patches(solution, options.patches)
+    for name, write in arrays.WRITERS.items():
+        if (path := getattr(options, name)) is not None:
+            write(solution, path)
 
 
 def _with_budget(
@@ -225,13 +220,16 @@ def _with_budget(
     text: str,
 ) -> str:
     """Add the uncertainty budget to the document; return the text that is left to be shown."""
+    from refimpl.sensitivities.budget import budget as budget_of
     from verification.cli import budget
 
     found["budget"] = None
     if reason := budget.hindrance(solution, options.approach):
         return f"{text}\n\n{wrapped(reason, 'no uncertainty budget: ')}"
     emit_early(found, options.json, text)  # an interrupt of the budget costs no solution
-    budgets = budget.made(scene, solution, tolerances)
+    with StatusLine() as line:
+        line.show("uncertainty budget: what every parameter changes")
+        budgets = budget_of(scene, solution, tolerances)
     found["budget"] = plain(budget.document(budgets))
     return f"\n{budget.table(budgets)}"
 

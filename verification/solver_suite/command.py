@@ -30,7 +30,7 @@ import subprocess
 import tempfile
 import zipfile
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import BinaryIO
 
@@ -39,7 +39,7 @@ import numpy as np
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
 from verification.solver_suite.process import exit_text
-from verification.solver_suite.protocol import NUMBERS, Abilities, Answer, BadAnswer, ContactProblem
+from verification.solver_suite.protocol import NUMBERS, Abilities, Answer, BadAnswer, ContactProblem, Coupling
 
 LONGEST = 86400.0
 """Seconds that one problem may take: a day. The system's clocks for waiting end at some weeks."""
@@ -150,10 +150,7 @@ def header_of(problem: ContactProblem) -> dict[str, object]:
         "periodic": int(problem.periodic),
         "tolerance": problem.tolerance,
         "friction": int(coupling is not None),
-        "tau": coupling.tau if coupling else 0.0,
-        "beta": coupling.beta if coupling else 0.0,
-        "shear_compliance": coupling.shear_compliance if coupling else 0.0,
-        "sliding_direction": coupling.sliding_direction if coupling else 0.0,
+        **{field.name: getattr(coupling, field.name, 0.0) for field in fields(Coupling)},
         "shape": problem.shape,
         "lengths": problem.lengths,
         "hardness": problem.hardness or 0.0,

@@ -109,7 +109,8 @@ class Export:
         sums = checksums(self._draft)
         self._write(SUMS, "".join(f"{digest}  {name}\n" for name, digest in sums.items()))
         version = version_of(self._draft)
-        self._write(CITATION, _citation(version))
+        names = {"software": versions()[DISTRIBUTION], "suite": suite.identity()["version"]}
+        self._write(CITATION, _text("citation.cff").format(version=version, **names))
         self._draft.chmod(0o755)
         if self.folder.exists():
             self.folder.rmdir()
@@ -179,11 +180,6 @@ def licence() -> str:
     if text is None:
         raise FileNotFoundError("the licence of rough-friction is not installed")
     return text
-
-
-def _citation(version: str) -> str:
-    software = versions()[DISTRIBUTION]
-    return _text("citation.cff").format(version=version, software=software, suite=suite.identity()["version"])
 
 
 def _text(name: str) -> str:
