@@ -27,20 +27,17 @@ def explained(options: Options, plan: Plan, scene: str, expected: Forecast | Non
     demand = f"requested accuracy: {plan.demand:.2g}; neglected terms may add up to {plan.budget:.2g}"
     rows = [["term", "", "change of mu", "of A", "why"], *(_row(term) for term in plan.terms)]
     size = "refined" if options.grid is None else f"{plan.grid} elements"
+    solved = "nothing is solved"
+    if expected is not None:
+        solved = f"solved are only {' and '.join(map(str, expected.solved))} elements, for the forecast"
     return "\n\n".join(
         (
-            f"{scene}: {size}, method {plan.method}; {_solved(expected)}\n{demand}",
+            f"{scene}: {size}, method {plan.method}; {solved}\n{demand}",
             columns(rows),
             "changes are relative, and expected not to be exceeded in 19 of 20 scenes",
             columns([*_expectations(options, plan), *_forecast(options, expected)]),
         )
     )
-
-
-def _solved(expected: Forecast | None) -> str:
-    if expected is None:
-        return "nothing is solved"
-    return f"solved are only {' and '.join(str(grid) for grid in expected.solved)} elements, for the forecast"
 
 
 def _forecast(options: Options, expected: Forecast | None) -> list[list[str]]:

@@ -101,19 +101,19 @@ class Study:
         for side, name in enumerate(("upper", "lower")):
             scene[name] = self._body(name, self.first_seed + 2 * k + side, point)
         grid = None if point["grid"] is None else int(point["grid"])
-        coordinates = {
-            "realisation": k,
-            "grid": grid,
-            "load": scene["load"],
-            "upper_rms": _random(scene["upper"]).get("rms", 0.0),
-            "lower_rms": _random(scene["lower"]).get("rms", 0.0),
-            "correlation_length": _length(scene),
-            "sliding_direction": scene["sliding_direction"],
-            "sliding_offset": scene["sliding_offset"],
-            "tau": scene["friction"]["tau"],
-            "beta": scene["friction"]["beta"],
-            "parameters": json.dumps(own) if (own := {axis: point[axis] for axis in self.own_axes}) else None,
-        }
+        own = {axis: point[axis] for axis in self.own_axes}
+        coordinates = (
+            scene
+            | scene["friction"]
+            | {
+                "realisation": k,
+                "grid": grid,
+                "upper_rms": _random(scene["upper"]).get("rms", 0.0),
+                "lower_rms": _random(scene["lower"]).get("rms", 0.0),
+                "correlation_length": _length(scene),
+                "parameters": json.dumps(own) if own else None,
+            }
+        )
         inputs = {
             "scene": scene,
             "grid": grid,
