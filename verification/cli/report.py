@@ -44,11 +44,14 @@ def run(options: argparse.Namespace) -> int:
         files = result_paths(folder)
     except ValueError as twice:
         raise refusal("--committed", str(folder), f"one result file of a name ({twice})") from twice
-    committed = {name_of(path): _committed(path) for path in files}
+    committed = {name_of(path): read_run(path, "--committed") for path in files}
     path = options.output / "report.html"
     read = [options.results, *([] if options.against is None else [options.against]), *files]
     check_outputs(read, output=[path, path.with_suffix(".pdf")], json=options.json)
-    _check_folder(options.output)
+    above = (options.output, *options.output.absolute().parents)
+    nearest = next(folder for folder in above if os.path.exists(folder))
+    if not (nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)):
+        raise refusal("--output", str(options.output), "a folder that can be written to")
     with StatusLine() as line:
         page = rendered(results, options.results, committed, folder, against, line.show)
     try:
@@ -87,31 +90,19 @@ def rendered(
         raise refusal("--committed", str(folder), f"result files ({alien})") from alien
 
 
-def _check_folder(output: Path) -> None:
-    """Raise InputError, before anything is drawn, unless the folder is there or can be made."""
-    nearest = next(folder for folder in (output, *output.absolute().parents) if os.path.exists(folder))
-    if not (nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)):
-        raise refusal("--output", str(output), "a folder that can be written to")
-
-
 def read_run(path: Path, option: str = "--results") -> Any:
-    """A result file of `verify`, checked; raises InputError, naming the option, for anything else."""
-    return _checked(option, path, read_or_refuse(option, path))
+    """A result file of `verify`, checked; raises InputError, naming the option, for anything else.
 
+    A committed file may be a study's as well, which the exhibit that shows it checks.
+    """
+    from reports.results import FORMAT, ResultFileError, check
 
-def _committed(path: Path) -> Any:
-    """A committed file: a run of `verify`, checked, or a study's, which the exhibit that shows it checks."""
-    from reports.results import FORMAT
-
-    found = read_or_refuse("--committed", path)
-    if not isinstance(found, dict):
-        raise refusal("--committed", str(path), "a result file: a JSON object")
-    return _checked("--committed", path, found) if found.get("format") == FORMAT else found
-
-
-def _checked(option: str, path: Path, found: object) -> Any:
-    from reports.results import ResultFileError, check
-
+    found = read_or_refuse(option, path)
+    if option == "--committed":
+        if not isinstance(found, dict):
+            raise refusal(option, str(path), "a result file: a JSON object")
+        if found.get("format") != FORMAT:
+            return found
     try:
         return check(found)
     except ResultFileError as wrong:

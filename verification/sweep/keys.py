@@ -66,6 +66,11 @@ _SETTINGS: Mapping[str, str] = {
 
 def study_keys() -> dict[str, tuple[Key, ...]]:
     """Return the keys of the tables of a study's file: study, vary, solve."""
+    for table, texts, names in (
+        ("study", set(_TEXTS), KEYS), ("vary", set(_AXES), AXES), ("solve", set(_SETTINGS), SOLVE_KEYS),
+    ):  # fmt: skip
+        if texts != set(names):
+            raise LookupError(f"{table}: no text, or no key, for {sorted(texts ^ set(names))}")
     return {"study": _study(), "vary": _vary(), "solve": _solve()}
 
 
@@ -91,7 +96,6 @@ def _study() -> tuple[Key, ...]:
     made = study_from_dict({"scene": _BASE["scene"], "vary": _BASE["vary"]})
     defaults = {name: as_toml(getattr(made, name)) for name in ("realisations", "first_seed", "normalise")}
     defaults |= {"scene": REQUIRED, "vary": "-", "solve": "-"}
-    _complete("study", _TEXTS, KEYS)
     allowed = {name: allowed_by(study_from_dict, _BASE, name, 0 if name == "scene" else "?") for name in KEYS}
     return tuple(
         Key(name, kind, "", defaults[name], allowed[name], meaning)
@@ -100,7 +104,6 @@ def _study() -> tuple[Key, ...]:
 
 
 def _vary() -> tuple[Key, ...]:
-    _complete("vary", _AXES, AXES)
     return tuple(
         Key(name, "number or list of numbers", unit, "-", _refusal("vary", name), meaning)
         for name, (unit, meaning) in _AXES.items()
@@ -108,7 +111,6 @@ def _vary() -> tuple[Key, ...]:
 
 
 def _solve() -> tuple[Key, ...]:
-    _complete("solve", _SETTINGS, SOLVE_KEYS)
     found = {f.name: f for made in (Terms, Options) for f in fields(made)}
     hints: dict[str, object] = get_type_hints(Options) | get_type_hints(Terms)
     return tuple(
@@ -127,9 +129,3 @@ def _refusal(table: str, key: str) -> str:
         return study_from_dict(_BASE | changed)
 
     return allowed_by(read, {}, key)
-
-
-def _complete(table: str, texts: Mapping[str, object], names: tuple[str, ...]) -> None:
-    """Refuse, by a LookupError, texts that are not of exactly these keys."""
-    if set(texts) != set(names):
-        raise LookupError(f"{table}: no text, or no key, for {sorted(set(texts) ^ set(names))}")
