@@ -12,7 +12,7 @@ import math
 from collections.abc import Hashable, Iterable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,7 +95,19 @@ def levels(slug: str) -> dict[str, Trait] | None:
         traits["changed"] = str(row["changed"])
     for part in PARTS[: None if _slides(row) else -len(OF_SLIDING)]:
         traits[f"changed {part}"] = part in _changed_parts(further)[slug] or None
-    return traits | (_of_sliding(row) if _slides(row) else {})
+    if not _slides(row):
+        return traits
+    angle, coupling = (int(row["sector"]) + 0.5) * math.pi / 4, float(row["coupling"])
+    return traits | {
+        "sector": f"{row['sector']}",
+        "cos of the direction": "negative" if math.cos(angle) < 0 else "positive",
+        "sin of the direction": "negative" if math.sin(angle) < 0 else "positive",
+        "beta": float(row["beta"]),
+        "tau": float(row["tau"]),
+        "coupling": abs(coupling),
+        "sign of c0": "positive" if coupling > 0 else "negative",
+        "c0": abs(coupling) / (math.pi * E),
+    }
 
 
 @cache
@@ -143,21 +155,6 @@ def _parts(row: Row, slug: str) -> dict[str, Hashable]:
 
 def _slides(row: Row) -> bool:
     return any(each.get("beta") or each.get("tau") for each in in_turn(row))
-
-
-def _of_sliding(row: Row) -> dict[str, Trait]:
-    angle = (int(row["sector"]) + 0.5) * math.pi / 4
-    coupling: Any = row["coupling"]
-    return {
-        "sector": f"{row['sector']}",
-        "cos of the direction": "negative" if math.cos(angle) < 0 else "positive",
-        "sin of the direction": "negative" if math.sin(angle) < 0 else "positive",
-        "beta": float(row["beta"]),
-        "tau": float(row["tau"]),
-        "coupling": abs(float(coupling)),
-        "sign of c0": "positive" if coupling > 0 else "negative",
-        "c0": abs(float(coupling)) / (math.pi * float(row["modulus"])),
-    }
 
 
 LISTED = 3
