@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from verification.cli.output import columns
 
 if TYPE_CHECKING:
-    from refimpl import Solution
     from refimpl.sensitivities.budget import Budget, Budgets
 
 # number of a budget, its name in the table
@@ -18,13 +17,6 @@ NAMES = {
     "max_pressure": "f_max",
     "binormal_force": "Q",
 }
-
-
-def hindrance(solution: Solution, approach: float | None) -> str:
-    """Why a solve can have no budget, in words; empty where it can. ``approach`` (m): as prescribed."""
-    if approach is not None:
-        return "it is about the scene's load, and this is at a prescribed approach"
-    return "" if solution.certified else "the solution's certificate does not hold"
 
 
 def document(budgets: Budgets) -> dict[str, object]:

@@ -116,7 +116,12 @@ def table(name: str, judged: Judged) -> str:
     rows = [[r.status, r.id, with_unit(r), f"{r.seconds:.1f} s"] for r in ran]
     reasons = [[r.id, reason(r)] for r in ran if r.status != "pass"]
     counts = ", ".join(f"{number} {status}" for status, number in done.counts.items())
-    parts = [columns(rows, indent=""), columns(reasons), *_not_applicable(done)]
+    parts = [columns(rows, indent=""), columns(reasons)]
+    left_out = [r for r in done.results if r.status == "unavailable"]
+    if left_out:
+        ids = {r.note: [o.id.partition("/")[2] for o in left_out if o.note == r.note] for r in left_out}
+        lines = [wrapped(", ".join(of_note), f"  {note}: ") for note, of_note in ids.items()]
+        parts.append("\n".join(["not applicable, and not passed:", *lines]))
     if listed := of_results(done.results):
         parts.append("problems of the covering design fail mostly where:\n  " + "\n  ".join(listed))
     if judged.unseen:
@@ -139,13 +144,3 @@ def reason(result: Result) -> str:
     if result.status == "error":
         return result.note
     return f"{result.claim}. Found: {result.note}" if result.note else result.claim
-
-
-def _not_applicable(done: Run) -> list[str]:
-    left_out = [r for r in done.results if r.status == "unavailable"]
-    reasons = dict.fromkeys(r.note for r in left_out)
-    lines = [
-        wrapped(", ".join(r.id.partition("/")[2] for r in left_out if r.note == note), f"  {note}: ")
-        for note in reasons
-    ]
-    return ["\n".join(["not applicable, and not passed:", *lines])] if lines else []

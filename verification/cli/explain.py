@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from refimpl.driver.refined import Forecast
     from refimpl.planning.plan import Plan
     from refimpl.planning.terms import Term
-    from refimpl.scene.resolution import Resolution
 
 
 def explained(options: Options, plan: Plan, scene: str, expected: Forecast | None = None) -> str:
@@ -78,14 +77,6 @@ def _row(term: Term) -> list[str]:
     return [term.label, "in" if term.included else "out", *sizes, term.reason]
 
 
-def _resolved(resolved: Resolution, *, refined: bool) -> str:
-    if refined:  # the grid is not known yet
-        return f"{resolved.required:.3g} required by the accuracy"
-    found = resolved.elements
-    missing = resolved.detail.curvature**2 / 8 / found**2
-    return f"{found:.3g}: rms slopes are seen {missing:.1e} too small"
-
-
 def _expectations(options: Options, plan: Plan) -> list[list[str]]:
     contact, grid, window = plan.contact, plan.grid, plan.contact.window
     share = contact.elements / grid.elements
@@ -99,7 +90,11 @@ def _expectations(options: Options, plan: Plan) -> list[list[str]]:
     ]
     refined = options.grid is None
     if (resolved := resolution(options.scene, grid, plan.demand)) is not None:
-        rows.append([f"elements per {resolved.detail.name}", _resolved(resolved, refined=refined)])
+        missing = resolved.detail.curvature**2 / 8 / resolved.elements**2
+        seen = f"{resolved.elements:.3g}: rms slopes are seen {missing:.1e} too small"
+        if refined:  # the grid is not known yet
+            seen = f"{resolved.required:.3g} required by the accuracy"
+        rows.append([f"elements per {resolved.detail.name}", seen])
     slope, error = expected_error(discretise(options.scene, grid))
     if error > ALLOWED:
         told = f"slopes of {math.degrees(slope):.2g} degrees: N at a given approach may be off by {error:.0%}"

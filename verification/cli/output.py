@@ -84,7 +84,12 @@ def files_of(scene: Scene) -> list[Path]:
 def emit(document: object, path: Path | None, table: str) -> None:
     """Write the document where asked and show the table; '-' prints the document in the table's place."""
     if path == Path("-"):
-        show(to_json(document, ascii_only=not _takes(to_json(document))).rstrip("\n"))
+        text = to_json(document)
+        try:
+            text.encode(sys.stdout.encoding or "utf-8")
+        except UnicodeEncodeError:
+            text = to_json(document, ascii_only=True)
+        show(text.rstrip("\n"))
         return
     try:
         if path is not None:
@@ -123,15 +128,6 @@ def show(text: str) -> None:
         print("\n".join(map(printable, text.split("\n"))), flush=True)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _takes(text: str) -> bool:
-    """Whether standard output can encode the text."""
-    try:
-        text.encode(sys.stdout.encoding or "utf-8")
-    except UnicodeEncodeError:
-        return False
-    return True
 
 
 def columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:

@@ -58,17 +58,13 @@ def printed(page: Path, paper: str = "a4") -> Path:
             raise refusal("--pdf", True, f"a browser that prints ({done.stderr.strip()[-200:]})")
         beside = target.with_name(f".{target.name}.new")
         if compacts():
-            _compacted(made, beside)
+            import pikepdf
+
+            pikepdf.settings.set_flate_compression_level(9)
+            packed = pikepdf.ObjectStreamMode.generate
+            with pikepdf.open(made) as document:
+                document.save(beside, object_stream_mode=packed, compress_streams=True, recompress_flate=True)
         else:
             shutil.copyfile(made, beside)
         os.replace(beside, target)
     return target
-
-
-def _compacted(made: Path, target: Path) -> None:
-    import pikepdf
-
-    pikepdf.settings.set_flate_compression_level(9)
-    with pikepdf.open(made) as document:
-        packed = pikepdf.ObjectStreamMode.generate
-        document.save(target, object_stream_mode=packed, compress_streams=True, recompress_flate=True)

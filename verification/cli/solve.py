@@ -224,7 +224,10 @@ def _with_budget(
     from verification.cli import budget
 
     found["budget"] = None
-    if reason := budget.hindrance(solution, options.approach):
+    reason = "" if solution.certified else "the solution's certificate does not hold"
+    if options.approach is not None:
+        reason = "it is about the scene's load, and this is at a prescribed approach"
+    if reason:
         return f"{text}\n\n{wrapped(reason, 'no uncertainty budget: ')}"
     emit_early(found, options.json, text)  # an interrupt of the budget costs no solution
     with StatusLine() as line:

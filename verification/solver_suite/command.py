@@ -119,7 +119,9 @@ class Command:
             except subprocess.TimeoutExpired as late:
                 raise BadAnswer(f"no answer within {self.timeout:g} s") from late
             finally:
-                _end(process)
+                with suppress(ProcessLookupError):  # what is left of its group
+                    os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
             if status:
                 raise BadAnswer(f"{exit_text(status)}: {_last_line(output)}")
 
@@ -129,13 +131,6 @@ def _last_line(output: BinaryIO) -> str:
     output.seek(max(0, output.seek(0, os.SEEK_END) - MOST_READ))
     said = output.read(MOST_READ).decode(errors="replace").split("\n")
     return next((line.strip() for line in reversed(said) if line.strip()), "nothing said")[:200]
-
-
-def _end(process: subprocess.Popen[bytes]) -> None:
-    """Kill what is left of the program's process group."""
-    with suppress(ProcessLookupError):
-        os.killpg(process.pid, signal.SIGKILL)
-    process.wait()
 
 
 def header_of(problem: ContactProblem) -> dict[str, object]:

@@ -60,9 +60,8 @@ class Export:
         try:
             self._draft = Path(tempfile.mkdtemp(dir=folder.absolute().parent, prefix=f".{folder.name[:40]}."))
         except OSError as refused:
-            raise InputError(
-                "--export", str(folder), f"a directory that can be written ({refused.strerror})"
-            ) from refused
+            allowed = f"a directory that can be written ({refused.strerror})"
+            raise InputError("--export", str(folder), allowed) from refused
         (self._draft / "data").mkdir()
         self._entries: list[dict[str, Any]] = []
         self._uncertified: list[dict[str, str]] = []
@@ -135,14 +134,7 @@ def _numbers(found: Certified) -> dict[str, Any]:
         "condition": found.condition,
         "residual": residual,
     }
-    return {"problem": {name: _plain(header[name]) for name in shown}, "answer": answer}
-
-
-def _plain(value: Any) -> Any:
-    """Python's own numbers in place of numpy's."""
-    if isinstance(value, tuple):
-        return [_plain(each) for each in value]
-    return value.item() if isinstance(value, np.generic) else value
+    return {"problem": {name: np.asarray(header[name]).tolist() for name in shown}, "answer": answer}
 
 
 def _table(entries: Iterable[Mapping[str, Any]]) -> str:
