@@ -86,7 +86,11 @@ def run(options: argparse.Namespace) -> int:
     from verification.solver_suite import convergence, suite
     from verification.solver_suite.process import Ended
 
-    among = _among(options)
+    if options.discretisation == "other" and options.thorough:
+        raise refusal("--thorough", True, "nothing beside --discretisation other")
+    among = suite.thorough() if options.thorough else suite.suite()
+    if options.discretisation == "other":
+        among = convergence.CASES
     checks = select_or_refuse(options.only, lambda: suite.select(options.only, among))
     check_suffix("--table", options.table, suite_table.SUFFIXES)
     if options.list:
@@ -105,17 +109,6 @@ def run(options: argparse.Namespace) -> int:
     if judged.ended is not None:
         raise judged.ended
     return convergence.exit_status(judged.results) if judged.of_convergence else judged.run.exit_status
-
-
-def _among(options: argparse.Namespace) -> tuple[Check, ...]:
-    """The suite, with further problems, or the limits and orders in its place."""
-    from verification.solver_suite import convergence, suite
-
-    if options.discretisation == "other":
-        if options.thorough:
-            raise refusal("--thorough", True, "nothing beside --discretisation other")
-        return convergence.CASES
-    return suite.thorough() if options.thorough else suite.suite()
 
 
 def _judged(

@@ -111,12 +111,6 @@ def plain(item: object) -> object:
     return None if isinstance(item, float) and not math.isfinite(item) else item
 
 
-def emit_early(document: object, path: Path | None, table: str) -> None:
-    """`emit` what there is before more work; no document where it could not be replaced, '-' or a pipe."""
-    if path != Path("-"):
-        emit(document, None if path is None or is_stream(path) else path, table)
-
-
 def show(text: str) -> None:
     """Print a text, what a terminal would obey escaped.
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Callable, Mapping
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -32,7 +31,9 @@ OPTIONS: Options = {
 
 def run(options: argparse.Namespace) -> int:
     """Make the report and print its path; the exit status is about that, not about the verdicts in it."""
+    from reports.generator import render
     from reports.result_files import name_of, result_paths
+    from reports.results import CaseDataError, ResultFileError
     from verification.framework.files import write_text
 
     results = read_run(options.results)
@@ -52,8 +53,13 @@ def run(options: argparse.Namespace) -> int:
     nearest = next(folder for folder in above if os.path.exists(folder))
     if not (nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)):
         raise refusal("--output", str(options.output), "a folder that can be written to")
-    with StatusLine() as line:
-        page = rendered(results, options.results, committed, folder, against, line.show)
+    try:
+        with StatusLine() as line:
+            page = render(results, committed, against, line.show)
+    except ResultFileError as alien:  # data that no figure can show
+        if isinstance(alien, CaseDataError) and alien.origin is None:
+            raise refusal("--results", str(options.results), f"a result file ({alien})") from alien
+        raise refusal("--committed", str(folder), f"result files ({alien})") from alien
     try:
         options.output.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError, PermissionError) as refused:
@@ -68,26 +74,6 @@ def run(options: argparse.Namespace) -> int:
     document = {"report": str(path), "counts": results["counts"]}
     emit(document, options.json, "\n".join([columns(rows, indent=""), *map(str, map(Path.resolve, written))]))
     return 0
-
-
-def rendered(
-    results: Any,
-    file: Path,
-    committed: Mapping[str, Any],
-    folder: Path,
-    against: Any = None,
-    progress: Callable[[str], None] = lambda _: None,
-) -> str:
-    """The page; raises InputError, naming the file or the folder, for data that no figure can show."""
-    from reports.generator import render
-    from reports.results import CaseDataError, ResultFileError
-
-    try:
-        return render(results, committed, against, progress)
-    except ResultFileError as alien:
-        if isinstance(alien, CaseDataError) and alien.origin is None:
-            raise refusal("--results", str(file), f"a result file ({alien})") from alien
-        raise refusal("--committed", str(folder), f"result files ({alien})") from alien
 
 
 def read_run(path: Path, option: str = "--results") -> Any:

@@ -23,13 +23,13 @@ from verification.cli.output import (
     check_outputs,
     check_suffix,
     emit,
-    emit_early,
     files_of,
     plain,
     refusal,
     wrapped,
 )
 from verification.cli.solve_table import document, show_finished, table
+from verification.framework.files import is_stream
 
 if TYPE_CHECKING:
     from refimpl import Scene, Solution
@@ -129,6 +129,7 @@ OPTIONS: Options = {
 
 def run(options: argparse.Namespace) -> int:
     """Solve and show; status 1 when the certificate does not meet the tolerance, or nothing touches."""
+    import refimpl
     from refimpl.scene.scene_file import read_tolerances
 
     scene = _read_scene(options)
@@ -140,7 +141,12 @@ def run(options: argparse.Namespace) -> int:
     if options.budget and options.approach is not None:
         raise refusal("--approach", options.approach, "none with --budget, which is about the scene's load")
     tolerances = read_tolerances(options.scene)
-    solution = _solved(scene, options, keywords)
+    try:
+        with StatusLine() as line:
+            solution = refimpl.solve(scene, **keywords, progress=line.show)
+    except KeyboardInterrupt as interrupt:
+        show_finished(interrupt, options.scene)
+        raise
     _write_files(solution, scene, options)
     found, text = document(solution, options.scene), table(solution, options.scene)
     if tolerances or options.budget:
@@ -189,18 +195,6 @@ def _explain(scene: Scene, options: argparse.Namespace, keywords: Mapping[str, A
     return 0
 
 
-def _solved(scene: Scene, options: argparse.Namespace, keywords: Mapping[str, Any]) -> Solution:
-    """Return the solution, with progress on a terminal; an interrupt shows the last finished grid."""
-    import refimpl
-
-    try:
-        with StatusLine() as line:
-            return refimpl.solve(scene, **keywords, progress=line.show)
-    except KeyboardInterrupt as interrupt:
-        show_finished(interrupt, options.scene)
-        raise
-
-
 def _write_files(solution: Solution, scene: Scene, options: argparse.Namespace) -> None:
     from verification.cli import arrays, plot
 
@@ -229,7 +223,9 @@ def _with_budget(
         reason = "it is about the scene's load, and this is at a prescribed approach"
     if reason:
         return f"{text}\n\n{wrapped(reason, 'no uncertainty budget: ')}"
-    emit_early(found, options.json, text)  # an interrupt of the budget costs no solution
+    if options.json != Path("-"):  # an interrupt of the budget costs no solution
+        replaceable = options.json is not None and not is_stream(options.json)
+        emit(found, options.json if replaceable else None, text)
     with StatusLine() as line:
         line.show("uncertainty budget: what every parameter changes")
         budgets = budget_of(scene, solution, tolerances)

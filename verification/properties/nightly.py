@@ -37,7 +37,15 @@ def run(path: Path, examples: int, seed: int) -> bool:
     for number, (solver, name) in enumerate((s, n) for s in SOLVERS for n in INVARIANTS):
         if (solver, name) not in known:
             slices.append(one_slice(number, solver, name, each, seed))
-            write_result(document(slices, seed), path)
+            log = {
+                "seed": seed,
+                "examples": sum(line["held"] for line in slices),
+                "counterexamples": sum(line["counterexample"] is not None for line in slices),
+                "processor_seconds": round(sum(line["seconds"] for line in slices), 1),
+                "slices": slices,
+                "provenance": provenance(),
+            }
+            write_result(log, path)
             progress.tick(f"{solver} {name}")
     progress.close()
     return all(line["counterexample"] is None for line in slices)
@@ -60,16 +68,4 @@ def one_slice(number: int, solver: str, name: str, examples: int, seed: int) -> 
         "held": held,
         "seconds": round(time.process_time() - begun, 2),
         "counterexample": found,
-    }
-
-
-def document(slices: list[dict[str, Any]], seed: int) -> dict[str, object]:
-    """The log: totals, every slice, and the conditions."""
-    return {
-        "seed": seed,
-        "examples": sum(line["held"] for line in slices),
-        "counterexamples": sum(line["counterexample"] is not None for line in slices),
-        "processor_seconds": round(sum(line["seconds"] for line in slices), 1),
-        "slices": slices,
-        "provenance": provenance(),
     }

@@ -61,7 +61,7 @@ class Store:
     def add(self, run: Run, row: Row, seconds: float) -> None:
         """Keep a finished run; raises sqlite3.IntegrityError for one that is there already."""
         values = [run.key, *run.coordinates.values(), *(row[name] for name in OUTCOMES)]
-        every = (*values, run.canonical, seconds)  # of which SQLite keeps NaN as NULL
+        every = (*values, run.canonical, seconds)  # SQLite keeps NaN as NULL
         values = [None if isinstance(value, float) and math.isnan(value) else value for value in every]
         with _refused(self._path):
             self.check_place()
@@ -178,7 +178,8 @@ def _connect(path: Path) -> sqlite3.Connection:
         connection = sqlite3.connect(address, uri=True, timeout=BUSY_SECONDS, isolation_level=None)
         try:
             connection.execute("pragma trusted_schema = off")
-            if _is_empty(connection):
+            tables = connection.execute("select count(*) from sqlite_master").fetchone()[0]
+            if tables == 0 and _pragma(connection, "application_id") == 0:  # new, or its creation was killed
                 connection.execute("begin immediate")
                 connection.execute(f"pragma application_id = {APPLICATION_ID}")
                 connection.execute(f"pragma user_version = {VERSION}")
@@ -237,12 +238,6 @@ def _holds_runs(connection: sqlite3.Connection) -> bool:
         return bool(connection.execute("select count(*) from runs").fetchone()[0])
     except sqlite3.Error:
         return True
-
-
-def _is_empty(connection: sqlite3.Connection) -> bool:
-    """Whether nothing was ever committed: a new file, or one whose creation was killed."""
-    tables = connection.execute("select count(*) from sqlite_master").fetchone()[0]
-    return tables == 0 and _pragma(connection, "application_id") == 0
 
 
 def _pragma(connection: sqlite3.Connection, name: str) -> int:
