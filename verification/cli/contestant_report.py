@@ -113,7 +113,9 @@ def table(name: str, judged: Judged) -> str:
 
     done = judged.run
     ran = [r for r in done.results if r.status != "unavailable"]
-    rows = [[r.status, r.id, with_unit(r), f"{r.seconds:.1f} s"] for r in ran]
+    units = ["relative" if r.metric == "relative" else r.unit for r in ran]  # a relative error has none else
+    errors = [f"{judgement(r)} {unit}" if judgement(r) else "" for r, unit in zip(ran, units, strict=True)]
+    rows = [[r.status, r.id, error, f"{r.seconds:.1f} s"] for r, error in zip(ran, errors, strict=True)]
     reasons = [[r.id, reason(r)] for r in ran if r.status != "pass"]
     counts = ", ".join(f"{number} {status}" for status, number in done.counts.items())
     parts = [columns(rows, indent=""), columns(reasons)]
@@ -131,12 +133,6 @@ def table(name: str, judged: Judged) -> str:
     if judged.missing:
         parts.append(f"interrupted: {len(judged.missing)} cases were not judged")
     return "\n\n".join([part for part in parts if part] + [f"{name}: {counts}; {done.seconds:.0f} s"])
-
-
-def with_unit(result: Result) -> str:
-    """The judgement in its unit; a relative error has none but that word."""
-    unit = "relative" if result.metric == "relative" else result.unit
-    return f"{judgement(result)} {unit}" if judgement(result) else ""
 
 
 def reason(result: Result) -> str:

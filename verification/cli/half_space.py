@@ -65,8 +65,7 @@ def surface(options: argparse.Namespace) -> int:
         from verification.cli.plot_surface import draw_local_error
 
         draw_local_error(verdict, options.plot)
-    document = _document(options.scene, note, verdict)
-    emit(document, options.json, _text(options.scene, note, verdict))
+    emit(_document(options.scene, note, verdict), options.json, _text(options.scene, note, verdict))
     return 0
 
 

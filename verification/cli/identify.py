@@ -94,7 +94,7 @@ def document(found: Identification) -> dict[str, object]:
     return {
         "tau": _interval(found.values["tau"]),
         "beta": _interval(found.values["beta"]),
-        "fitted": {name: _interval(found.values[name]) for name in _further(found)},
+        "fitted": {name: _interval(found.values[name]) for name in tuple(found.values)[2:]},
         "covariance": found.covariance.tolist(),
         "identified": found.is_identified,
         "method": found.method,
@@ -135,11 +135,6 @@ def _finite(number: float) -> float | None:
 
 def _interval(interval: Interval) -> dict[str, float | None]:
     return {"value": interval.value, "low": interval.low, "high": _finite(interval.high)}
-
-
-def _further(found: Identification) -> tuple[str, ...]:
-    """Names of the parameters fitted beside tau and beta."""
-    return tuple(found.values)[2:]
 
 
 def _scaled(name: str) -> tuple[str, float]:

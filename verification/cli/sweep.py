@@ -139,6 +139,7 @@ def _check_suffixes(**written: Path | None) -> None:
 
 def _export(options: argparse.Namespace, done: Sweep, store: Path) -> None:
     """Write and show what was asked for; the rows take the table's place on standard output."""
+    from verification.framework.provenance import provenance
     from verification.sweep import export
 
     table = _table(done, store)
@@ -156,22 +157,14 @@ def _export(options: argparse.Namespace, done: Sweep, store: Path) -> None:
 
         found = curves(done.rows, options.x, options.y, options.by)
         draw_sweep(found, options.x, options.y, options.by, options.plot)
-    emit(_document(done, store), options.json, table)
-
-
-def _document(done: Sweep, store: Path) -> dict[str, object]:
-    from verification.framework.provenance import provenance
-
-    return {
+    document = {
         "store": str(store),
-        "found": done.found,
-        "finished": done.finished,
-        "failures": done.failures,
-        "statuses": done.statuses,
+        **{name: getattr(done, name) for name in ("found", "finished", "failures", "statuses")},
         "seconds": round(done.seconds, 3),
         "rows": plain(done.table()),
         "provenance": provenance(),
     }
+    emit(document, options.json, table)
 
 
 def _table(done: Sweep, store: Path) -> str:

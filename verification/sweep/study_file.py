@@ -169,11 +169,9 @@ def _values(axis: str, values: object, folder: Path) -> tuple[Any, ...]:
     allowed = "a finite number, or a list of different ones"
     if isinstance(values, int | float) and not isinstance(values, bool):
         values = [values]
-    if not isinstance(values, list) or not values:
-        raise InputError(f"vary.{axis}", values, allowed)
-    for value in values:
+    for value in values if isinstance(values, list) else ():
         require_number(f"vary.{axis}", value, allowed)
-    if len(set(values)) != len(values):
+    if not isinstance(values, list) or not values or len(set(values)) != len(values):
         raise InputError(f"vary.{axis}", values, allowed)
     if axis.endswith(".seed"):
         return tuple(_whole(f"vary.{axis}", value, at_least=0, below=2**63) for value in values)
