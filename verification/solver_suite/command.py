@@ -119,7 +119,7 @@ class Command:
             except subprocess.TimeoutExpired as late:
                 raise BadAnswer(f"no answer within {self.timeout:g} s") from late
             finally:
-                with suppress(ProcessLookupError):  # what is left of its group
+                with suppress(ProcessLookupError):  # members of its group that are left
                     os.killpg(process.pid, signal.SIGKILL)
                 process.wait()
             if status:
