@@ -9,7 +9,7 @@ from importlib.resources import as_file, files
 from typing import TYPE_CHECKING
 
 from verification.cli.options import Options, number, option
-from verification.cli.output import columns, emit
+from verification.cli.output import columns, emit, refusal
 
 if TYPE_CHECKING:
     from appendix_a.fem.coefficient_map import CoefficientMap
@@ -90,14 +90,14 @@ def element(options: argparse.Namespace) -> int:
 
 
 def _upper(options: argparse.Namespace) -> tuple[float, float] | None:
-    from refimpl.errors import InputError, require_size
+    from refimpl.errors import require_size
 
     given = options.upper_E, options.upper_nu
     if given == (None, None):
         return None
     if None in given:
         name = "upper-E" if given[0] is None else "upper-nu"
-        raise InputError(f"--{name}", None, "both --upper-E and --upper-nu, or neither")
+        raise refusal(f"--{name}", None, "both --upper-E and --upper-nu, or neither")
     for name, modulus in (("--E", options.E), ("--upper-E", options.upper_E)):
         require_size(name, modulus, "a positive modulus")
     return options.upper_E, options.upper_nu

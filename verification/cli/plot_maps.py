@@ -84,7 +84,8 @@ def view_of(solution: Solution) -> View:
     first, last = (0, 0), grid.shape
     if solution.contact.any():
         places = np.argwhere(solution.contact)
-        first, last = _widened(places.min(axis=0), places.max(axis=0) + 1, grid.shape, grid.spacings)
+        ends = places.min(axis=0).tolist(), (places.max(axis=0) + 1).tolist()
+        first, last = _widened(*ends, grid.shape, grid.spacings)
     share = math.prod(b - a for a, b in zip(first, last, strict=True)) / grid.elements
     whole = share >= MOST_OF_DOMAIN
     if whole:

@@ -88,21 +88,14 @@ def draw_local_error(verdict: SurfaceVerdict, path: Path) -> None:
     with print_style():
         figure, axes = subplots(figsize=(4.4, 2.8 if slender else 3.8))
         (_error_profile if slender else _error_map)(axes, verdict)
-        figure.suptitle(_title(verdict), fontsize=8)
+        rows = [verdict.numbers()[name] for name in ("normal_force", "friction_coefficient", "contact_area")]
+        N, mu, A = (f"{row['stated'] / abs(row['value']):.1%}" if row["value"] else "-" for row in rows)
+        figure.suptitle(
+            f"Flat coefficients off by more than 2 % on {verdict.share_above:.1%} of the area;\n"
+            f"N at the approach by {N}, mu by {mu}, A by {A} (stated)",
+            fontsize=8,
+        )
         write(figure, path)
-
-
-def _title(verdict: SurfaceVerdict) -> str:
-    percents = [_percent(verdict, name) for name in ("normal_force", "friction_coefficient", "contact_area")]
-    return (
-        f"Flat coefficients off by more than 2 % on {verdict.share_above:.1%} of the area;\n"
-        f"N at the approach by {percents[0]}, mu by {percents[1]}, A by {percents[2]} (stated)"
-    )
-
-
-def _percent(verdict: SurfaceVerdict, name: str) -> str:
-    row = verdict.numbers()[name]
-    return f"{row['stated'] / abs(row['value']):.1%}" if row["value"] else "-"
 
 
 def _error_map(axes: Axes, verdict: SurfaceVerdict) -> None:
