@@ -31,6 +31,7 @@ UNITS = {
     "mean_gap": "m",
     "normal_force": "N",
     "friction_force": "N",
+    "friction_force_corrected": "N",
     "elastic_friction": "N",
     "binormal_force": "N",
     "seconds": "s",

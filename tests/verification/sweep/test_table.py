@@ -150,7 +150,7 @@ def test_a_frame_has_units_and_named_parameters_as_columns() -> None:
 
 def test_the_unit_of_every_column() -> None:
     units = {
-        "N": "load normal_force friction_force elastic_friction binormal_force",
+        "N": "load normal_force friction_force friction_force_corrected elastic_friction binormal_force",
         "m": "upper_rms lower_rms correlation_length sliding_offset approach mean_gap",
         "m^2": "contact_area contact_area_corrected plastic_area contact_area_cycle",
         "Pa": "tau max_pressure mean_pressure",
