@@ -176,7 +176,7 @@ def ensemble_table(seed: int) -> SyntheticTable:
 
 
 def true_friction(scene: rf.Scene, load: float, grid: int) -> float:
-    """Return mu without the mean excess of the contact edge, on a fine grid. Raises ArithmeticError where the solve does not converge."""
+    """Return the corrected mu on a fine grid. Raises ArithmeticError where the solve does not converge."""
     solution = rf.solve(replace(scene, load=load), grid)
     if not solution.converged:
         raise ArithmeticError(f"the solve at {load:.4g} N ended as {solution.status.value}")
