@@ -82,7 +82,7 @@ def test_the_table_of_bars_is_that_of_the_results() -> None:
     (mu,) = (row for name, accuracy, row in rows if (name, accuracy) == ("mu", "0.01"))
     _, held, _, longer, _ = mu.split(" | ")
     assert f"those of mu as summed over elements cover in {held.split()[-2]} %" in text
-    assert f"are {longer.split()[-1]} times its error in the median" in text
+    assert f"are {longer.split()[-1]} times the error in the median" in text
     scenes = sum(last - first + 1 for first, last in (study["seeds"] for study in studies))
     assert f"on {scenes} random scenes" in text
 

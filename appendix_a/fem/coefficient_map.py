@@ -58,12 +58,13 @@ class CoefficientMap:
         check_complete(self.slope_deg, self.wavelength, self.position)
         if not 0.0 <= real(slope_deg) <= self.slope_deg[-1]:
             raise InputError("slope_deg", slope_deg, f"0 to {self.slope_deg[-1]:g} degrees")
-        if not real(wavelength) >= self.wavelength[0]:
-            raise InputError("wavelength", wavelength, f"at least {self.wavelength[0]:g} half-widths")
+        if not self.wavelength[0] <= real(wavelength) < math.inf:
+            raise InputError("wavelength", wavelength, f"at least {self.wavelength[0]:g} half-widths, finite")
         if not math.isfinite(real(position)):
             raise InputError("position", position, "a finite fraction of the wavelength")
         if not -1.0 < real(nu) <= 0.5:
             raise InputError("nu", nu, "a Poisson ratio, -1 < nu <= 0.5")
+        position %= 1.0  # large products with it would overflow
         tangent = math.tan(math.radians(slope_deg))
         smallest = math.tan(math.radians(self.slope_deg[0]))
         where = max(tangent, smallest), 1.0 / min(wavelength, self.wavelength[-1])

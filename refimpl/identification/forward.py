@@ -151,7 +151,7 @@ def _response(
 def _log_slope(scene: Scene, solution: Solution, name: str) -> float:
     """``d mu / d ln p`` by two solves: areas, and with them friction, are counted (`sensitivity`)."""
     value = parameters(scene)[name]
-    return value * difference_quotients(scene, solution, name, value)["friction_coefficient"]
+    return value * difference_quotients(scene, solution, name, value)[0]["friction_coefficient"]
 
 
 def _inputs(

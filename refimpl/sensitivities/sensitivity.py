@@ -20,17 +20,18 @@ load, a shape or a roughness stands how far the fixed set's answer is from that 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
 from refimpl.accuracy.discretisation_error import AREA, area_scatter
 from refimpl.driver.solve import solve
-from refimpl.errors import LEAST, InputError
+from refimpl.errors import InputError
 from refimpl.grid import Array
 from refimpl.model.friction import friction_per_area
-from refimpl.model.materials import RIGID
 from refimpl.model.problem import Problem, Terms
 from refimpl.scene.discretise import discretise
 from refimpl.scene.parameters import differentiable_parameters, parameters, with_parameter
@@ -43,13 +44,9 @@ NUMBERS = ("friction_coefficient", "contact_area", "max_pressure", "binormal_for
 _STEP = 1e-4  # relative, of parameters: smooth at a fixed set, so the quotient errs by 1e-8
 _STRIDE = 0.1  # relative, of parameters in full solves: moves an edge by several per cent of a radius
 _SHIFT = 0.1  # correlation lengths by which a change of the length may move the surface at the far border
-_RANGES = {  # that steps may not leave
-    ".nu": (math.nextafter(-1, 0), 0.5),
-    ".E": (LEAST, RIGID),
-    ".hurst": (LEAST, 1.0),
-}
 _TIED = 1e-6  # share of p_max within which pressures tie: symmetric scenes, apart from slopes
 _SOLVED = 1e-3  # relative residual of a linear solve, at most: the digits of a derivative
+_Found = TypeVar("_Found")
 
 
 @dataclass(frozen=True)
@@ -100,14 +97,17 @@ def sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = 
     if names is not None:
         values = {name: value for name, value in values.items() if name in ("load", *names)}
     answers = {name: _answer(scene, base, fixed, name, value) for name, value in values.items()}
-    solved = {
+    quotients = {
         name: difference_quotients(scene, solution, name, value)
         for name, value in values.items()
         if name == "load" or ".surface" in name or yields
     }
+    solved = {name: derivatives for name, (derivatives, _) in quotients.items()}
+    # 95 % bound of what counting elements in two solves leaves uncertain, as in the error bars of one grid
+    counting = 2 * math.sqrt(2) * AREA.scatter * float(area_scatter([solution.features])[0])
     counted = {
-        name: (derivatives["contact_area"], _scatter(scene, solution, name, values[name]))
-        for name, derivatives in solved.items()
+        name: (derivatives["contact_area"], counting / span)
+        for name, (derivatives, span) in quotients.items()
     }
     edge = EdgeMotion(fixed, counted["load"], answers["load"].pressure)
     areas = {
@@ -168,11 +168,13 @@ class _Answer:
 
 
 def _answer(scene: Scene, base: Problem, fixed: FixedContact, name: str, value: float) -> _Answer:
-    low, high = _ends(name, value, _STEP)
-    span = high - low
-    below, above = (
-        _changed(scene, base, with_parameter(scene, name, at)).windowed(fixed.window) for at in (low, high)
+    (low, below), (high, above) = _both_sides(
+        name,
+        value,
+        _STEP,
+        lambda at: _changed(scene, base, with_parameter(scene, name, at)).windowed(fixed.window),
     )
+    span = high - low
     residuals = [fixed.residual(problem, fixed.pressure, fixed.approach) for problem in (below, above)]
     found = fixed.response((residuals[1] - residuals[0]) / span)
     if not found.residual <= _SOLVED:
@@ -199,11 +201,23 @@ def _answer(scene: Scene, base: Problem, fixed: FixedContact, name: str, value: 
     )
 
 
-def _ends(name: str, value: float, step: float) -> tuple[float, float]:
-    """A parameter's values a relative step below and above, within its range."""
-    low, high = sorted((value * (1 - step), value * (1 + step)))
-    least, most = next((ends for key, ends in _RANGES.items() if name.endswith(key)), (low, high))
-    return max(low, least), min(high, most)
+def _both_sides(
+    name: str, value: float, step: float, make: Callable[[float], _Found]
+) -> tuple[tuple[float, _Found], tuple[float, _Found]]:
+    """Return the values a relative step below and above a parameter, each with what is made of it.
+
+    Where one side is refused the value itself takes its place. Raises `InputError` where both are.
+    """
+    found: dict[float, _Found] = {}
+    for at in (value * (1 - step), value * (1 + step)):
+        with suppress(InputError):
+            found[at] = make(at)
+    if not found:
+        raise InputError(name, value, f"a value with another allowed one {step:.2g} of it below or above")
+    if len(found) == 1:
+        found[value] = make(value)
+    low, high = sorted(found)
+    return (low, found[low]), (high, found[high])
 
 
 def _changed(scene: Scene, base: Problem, changed: Scene) -> Problem:
@@ -214,21 +228,23 @@ def _changed(scene: Scene, base: Problem, changed: Scene) -> Problem:
     return discretise(changed, base.grid, base.terms)
 
 
-def difference_quotients(scene: Scene, solution: Solution, name: str, value: float) -> dict[str, float]:
-    """Return each number's derivative over a parameter by two solves, a tenth of its value to either side.
+def difference_quotients(
+    scene: Scene, solution: Solution, name: str, value: float
+) -> tuple[dict[str, float], float]:
+    """Return each number's derivative over a parameter by two solves, and how far apart their values are.
 
-    Central but at the end of a range. Raises `ArithmeticError` where one of both solves does not converge.
+    A tenth of the value to either side, or to one where the other is not allowed. Raises `ArithmeticError`
+    where one of both solves does not converge, `InputError` where neither side is allowed.
     """
-    step = _stride(scene, name, value)
-    low, high = _ends(name, value, step)
-    below, above = (
-        solved_again(with_parameter(scene, name, at), solution, plastic=solution.problem.terms.plastic)
-        for at in (low, high)
+    step, plastic = _stride(scene, name, value), solution.problem.terms.plastic
+    (low, below), (high, above) = _both_sides(
+        name, value, step, lambda at: solved_again(with_parameter(scene, name, at), solution, plastic=plastic)
     )
     for ended in (below, above):
         if not ended.converged:
             raise ArithmeticError(f"a solve with {name} changed by {step:.2g} ended as {ended.status.value}")
-    return {number: (getattr(above, number) - getattr(below, number)) / (high - low) for number in NUMBERS}
+    span = high - low
+    return {number: (getattr(above, number) - getattr(below, number)) / span for number in NUMBERS}, span
 
 
 def solved_again(
@@ -263,13 +279,6 @@ def _stride(scene: Scene, name: str, value: float) -> float:
         turn = abs(value) if key == "lay" else 1.0
         return min(_STRIDE, _SHIFT * finest / max(scene.lengths) / turn)
     return _STRIDE
-
-
-def _scatter(scene: Scene, solution: Solution, name: str, value: float) -> float:
-    """95 % bound of what counting elements twice does to ``dA/dp``: as the error bars have it of one grid."""
-    one = AREA.scatter * float(area_scatter([solution.features])[0])
-    low, high = _ends(name, value, _stride(scene, name, value))
-    return 2 * math.sqrt(2) * one / (high - low)
 
 
 def _gathered(

@@ -154,7 +154,7 @@ def test_numbers_of_every_kind_are_taken() -> None:
 # --- tables on disk ---
 
 
-@pytest.mark.parametrize("where", [(31.0, 20.0), (-1.0, 20.0), (5.0, 7.0), (5.0, math.nan)])
+@pytest.mark.parametrize("where", [(31.0, 20.0), (-1.0, 20.0), (5.0, 7.0), (5.0, math.nan), (5.0, math.inf)])
 def test_places_outside_a_map_are_refused(where: tuple[float, float]) -> None:
     with pytest.raises(InputError):
         invented().departure(*where, 0.25, 0.3)

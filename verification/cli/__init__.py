@@ -15,6 +15,7 @@ from typing import NoReturn
 
 from verification.cli import (
     appendix_a,
+    contestant,
     identify,
     inspect,
     keys,
@@ -24,6 +25,7 @@ from verification.cli import (
     tradeoff,
     verify,
 )
+from verification.cli.options import subcommand
 
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 OUTPUT_REFUSED = (
@@ -40,6 +42,27 @@ examples:
   rough-friction report --results results.json --output report
 """
 
+TRADEOFF = "the cost-accuracy table of a scene: grid and seconds for an error in mu, A or p_max"
+COMMANDS = (
+    (solve, "solve a scene",
+     "Solve a scene: friction, contact area, pressures, and how well it converged."),
+    (inspect, "a surface file: points, units, orientation, roughness parameters, picture",
+     "Read a file of heights as a scene would, and print what it holds and how rough it is."),
+    (identify, "find tau and beta from friction measured at several loads",
+     "Find tau and beta, with 95 % intervals, from friction measured at several loads."),
+    (keys, "every key of scene and study files: type, unit, default, allowed values, meaning",
+     "Print the keys of scene and study files, or write them as a page."),
+    (verify, "run the verification cases",
+     "Run the verification cases. A case that could not run is never a pass."),
+    (report, "make the validation report",
+     "Make the validation report, one HTML file, from a result file of 'verify' and the\n"
+     "committed results of long cases and studies."),
+    (sweep, "solve the runs of a study: realisations x roughness x load x direction x grid",
+     "Solve the runs of a study in worker processes, resumably, and export the table."),
+    (tradeoff, TRADEOFF, f"Print {TRADEOFF}."),
+)  # fmt: skip
+"""Modules with the help and the description of the subcommands that have their names."""
+
 
 class Parser(argparse.ArgumentParser):
     """A parser that refuses bad usage by one line on stderr."""
@@ -53,7 +76,7 @@ class Parser(argparse.ArgumentParser):
 
 def parser() -> argparse.ArgumentParser:
     """The whole command line."""
-    top = Parser(
+    top: argparse.ArgumentParser = Parser(
         prog="rough-friction",
         description="Friction between rough elastic surfaces: solve scenes, verify the solvers, report.",
         epilog=EPILOG,
@@ -61,8 +84,13 @@ def parser() -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action="version", version=f"rough-friction {version('rough-friction')}")
     commands = top.add_subparsers(title="subcommands", metavar="COMMAND", required=True)
-    for module in (solve, inspect, identify, keys, verify, report, sweep, tradeoff, appendix_a):
-        module.add_parser(commands)
+    for module, text, about in COMMANDS:
+        name, one_of = module.__name__.rpartition(".")[2], solve.ONE_OF if module is solve else ()
+        texts = {"help": text, "description": about, "epilog": module.EPILOG}
+        made = subcommand(commands, name, module.run, module.OPTIONS, one_of, **texts)
+        if module is verify:
+            contestant.add_options(made)
+    appendix_a.add_parser(commands)
     return top
 
 

@@ -6,14 +6,14 @@ import argparse
 import json
 import math
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from verification.cli import appendix_tables, half_space
 from verification.cli.options import Options, Parsers, declare, number, numbers, option, subcommand
-from verification.cli.output import columns, emit
+from verification.cli.output import columns, emit, refusal
 
 # A table is of a slope's square, so none of zero; half a period of positions is all, the rest is its mirror.
 MAP_RANGES = {
@@ -121,16 +121,9 @@ def strip(options: argparse.Namespace) -> int:
 def fem(options: argparse.Namespace) -> int:
     """Displacements of a wavy boundary and of a flat one."""
     from appendix_a.fem.sinusoid import SOLVES, fem_json, sinusoid
-    from verification.framework.files import Progress
 
-    progress = Progress(SOLVES)
-    try:
-        with _by_option():
-            found = sinusoid(
-                *_wave(options), offsets=options.offsets, progress=lambda: progress.tick("finite elements")
-            )
-    finally:
-        progress.close()
+    with _by_option(), _progress(SOLVES, "finite elements") as tick:
+        found = sinusoid(*_wave(options), offsets=options.offsets, progress=tick)
     document = fem_json(found)
     remark = f"discretisation error {document['discretisation_error']:.1g}"
     emit(document, options.json, _displacements(document, remark))
@@ -141,11 +134,9 @@ def coefficient_map(options: argparse.Namespace) -> int:
     """The versioned table of the error of flat coefficients, every Poisson ratio in it."""
     from appendix_a.fem.coefficient_map import check_complete
     from appendix_a.fem.map2d import POSITIONS, SLOPES_DEG, WAVELENGTHS, compute
-    from refimpl.errors import InputError
-    from verification.framework.files import Progress
 
     if options.jobs < 1:
-        raise InputError("--jobs", options.jobs, "at least one worker process")
+        raise refusal("--jobs", options.jobs, "at least one worker process")
     axes = {
         "slopes-deg": tuple(options.slopes_deg or SLOPES_DEG),
         "wavelengths": tuple(options.wavelengths or WAVELENGTHS),
@@ -154,19 +145,12 @@ def coefficient_map(options: argparse.Namespace) -> int:
     for name, (low, high, unit) in MAP_RANGES.items():
         for value in axes[name]:
             if not low <= value <= high:
-                raise InputError(f"--{name}", value, f"{low:g} to {high:g} {unit}")
+                raise refusal(f"--{name}", value, f"{low:g} to {high:g} {unit}")
     with _by_option(**{field: (name, axes[name], "") for field, name in AXIS_OPTIONS.items()}):
         check_complete(*axes.values())
-    progress = Progress(len(axes["slopes-deg"]) * len(axes["wavelengths"]))
-    try:
-        with _by_option():
-            found = compute(
-                *axes.values(),
-                workers=options.jobs,
-                progress=lambda *_: progress.tick("slopes and wavelengths"),
-            )
-    finally:
-        progress.close()
+    pairs = len(axes["slopes-deg"]) * len(axes["wavelengths"])
+    with _by_option(), _progress(pairs, "slopes and wavelengths") as tick:
+        found = compute(*axes.values(), workers=options.jobs, progress=tick)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "map.json"
         found.write(path)
@@ -212,14 +196,23 @@ def wedge(options: argparse.Namespace) -> int:
 
 def _refuse_angles(options: argparse.Namespace) -> None:
     """In degrees, as they were typed, what `appendix_a.wedge` would refuse in radians."""
-    from refimpl.errors import InputError
-
     if not 0 <= options.gamma_deg < 90:
-        raise InputError("--gamma-deg", options.gamma_deg, "a slope angle of 0 to below 90 degrees")
+        raise refusal("--gamma-deg", options.gamma_deg, "a slope angle of 0 to below 90 degrees")
     face = 90 - options.gamma_deg
     for theta in options.theta_deg:
         if abs(theta) > face + FACE_SLACK_DEG:
-            raise InputError("--theta-deg", theta, f"angles within the faces at +-{face:g} degrees")
+            raise refusal("--theta-deg", theta, f"angles within the faces at +-{face:g} degrees")
+
+
+@contextmanager
+def _progress(total: int, text: str) -> Iterator[Callable[..., None]]:
+    from verification.framework.files import Progress
+
+    progress = Progress(total)
+    try:
+        yield lambda *_: progress.tick(text)
+    finally:
+        progress.close()
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from functools import cache
 from importlib.resources import as_file, files
 from typing import TYPE_CHECKING
 
-from verification.cli.options import Options, option
+from verification.cli.options import Options, number, option
 from verification.cli.output import columns, emit
 
 if TYPE_CHECKING:
@@ -16,22 +16,22 @@ if TYPE_CHECKING:
 
 SHARE = 0.1  # second order over first; more has a caution
 LOOK_UP_OPTIONS: Options = {
-    "--slope-deg": option("maximum slope of the profile (degrees)", type=float, required=True),
-    "--wavelength": option("in half-widths of the strip", type=float, required=True),
-    "--position": option("crest 0, flank 0.25, valley 0.5", type=float, required=True),
-    "--nu": option("Poisson's ratio", type=float, required=True),
+    "--slope-deg": option("maximum slope of the profile (degrees)", type=number, required=True),
+    "--wavelength": option("in half-widths of the strip", type=number, required=True),
+    "--position": option("crest 0, flank 0.25, valley 0.5", type=number, required=True),
+    "--nu": option("Poisson's ratio", type=number, required=True),
 }
 ELEMENT_OPTIONS: Options = {
-    "--slope-deg": option("maximum slope of the wave (degrees)", type=float, required=True),
-    "--nu": option("Poisson's ratio", type=float, required=True),
+    "--slope-deg": option("maximum slope of the wave (degrees)", type=number, required=True),
+    "--nu": option("Poisson's ratio", type=number, required=True),
 }
 PAIR: tuple[str, str, Options] = (
     "a pair",
     "the first orders enter as lower minus upper",
     {
-        "--E": option("modulus of the lower body (any unit)", type=float, default=1.0),
-        "--upper-E": option("modulus of the upper body, the same unit", type=float),
-        "--upper-nu": option("its Poisson's ratio", type=float),
+        "--E": option("modulus of the lower body (any unit)", type=number, default=1.0),
+        "--upper-E": option("modulus of the upper body, the same unit", type=number),
+        "--upper-nu": option("its Poisson's ratio", type=number),
     },
 )
 
@@ -90,7 +90,7 @@ def element(options: argparse.Namespace) -> int:
 
 
 def _upper(options: argparse.Namespace) -> tuple[float, float] | None:
-    from refimpl.errors import InputError, require_number
+    from refimpl.errors import InputError, require_size
 
     given = options.upper_E, options.upper_nu
     if given == (None, None):
@@ -99,7 +99,7 @@ def _upper(options: argparse.Namespace) -> tuple[float, float] | None:
         name = "upper-E" if given[0] is None else "upper-nu"
         raise InputError(f"--{name}", None, "both --upper-E and --upper-nu, or neither")
     for name, modulus in (("--E", options.E), ("--upper-E", options.upper_E)):
-        require_number(name, modulus, "a positive modulus", above=0)
+        require_size(name, modulus, "a positive modulus")
     return options.upper_E, options.upper_nu
 
 

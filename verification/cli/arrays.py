@@ -1,4 +1,4 @@
-"""A solution's arrays as NPZ or NetCDF, and its contact patches as CSV."""
+"""A solution as files: arrays as NPZ or NetCDF, deformed surfaces for ParaView, contact patches as CSV."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import csv
 import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from verification.cli.output import refusal
 
 if TYPE_CHECKING:
     from refimpl import Solution
@@ -16,15 +18,13 @@ PATCH_UNITS = {"area": "m^2", "load": "N", "mean_pressure": "Pa", "max_pressure"
 
 def require_netcdf(netcdf: Path | None) -> None:
     """Refuse, before any work, NetCDF without its library. Raises InputError."""
-    from refimpl.errors import InputError
-
     if netcdf is not None:
         try:
             import h5netcdf  # noqa: F401  # only whether it is there
             import xarray  # noqa: F401
         except ModuleNotFoundError as missing:
             allowed = "xarray and h5netcdf installed (in a checkout: pip install '.[arrays]'), or --npz"
-            raise InputError("--netcdf", str(netcdf), allowed) from missing
+            raise refusal("--netcdf", str(netcdf), allowed) from missing
 
 
 def write_npz(solution: Solution, path: Path) -> None:
@@ -76,6 +76,39 @@ def write_patches(solution: Solution, path: Path) -> None:
     writer.writerow(f"{name} [{PATCH_UNITS[name]}]" if name in PATCH_UNITS else name for name in names)
     writer.writerows(map(astuple, solution.patches()))
     write_text(buffer.getvalue(), path)
+
+
+def write_vtk(solution: Solution, path: Path) -> None:
+    """Write the lower deformed surface and, as a second sheet, the upper one, for ParaView.
+
+    Points are the element centres at the deformed heights (m), cells lie between them. Point fields:
+    `pressure` and `traction` (Pa), `gap` (m) between the deformed surfaces, `height` (m) to warp by, since
+    heights of um on lengths of mm look flat, `body` (0 lower, 1 upper).
+    """
+    import meshio
+    import numpy as np
+
+    from verification.framework.files import replacing
+
+    x, y = np.meshgrid(solution.grid.x, solution.grid.y, indexing="ij")
+    sheets = [np.column_stack([x.ravel(), y.ravel(), z.ravel()])
+              for z in (solution.surface_lower, solution.surface_upper)]  # fmt: skip
+    number = np.arange(x.size).reshape(x.shape)
+    around = (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
+    squares = np.stack(around, axis=-1).reshape(-1, 4)
+    contact = {"pressure": solution.pressure, "traction": solution.traction, "gap": solution.gap}
+    fields = {name: np.tile(values.ravel(), 2) for name, values in contact.items()}
+    fields["height"] = np.concatenate([sheet[:, 2] for sheet in sheets])
+    fields["body"] = np.repeat([0.0, 1.0], x.size)
+    mesh = meshio.Mesh(
+        np.vstack(sheets), [("quad", np.vstack([squares, squares + x.size]))], point_data=fields
+    )
+    with replacing(path) as temporary:
+        mesh.write(temporary)
+
+
+WRITERS = {"vtk": write_vtk, "npz": write_npz, "netcdf": write_netcdf, "patches": write_patches}
+"""By the option that names the file."""
 
 
 def _provenance() -> dict[str, str]:

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from verification.cli.output import StatusLine, columns
+from verification.cli.output import columns
 
 if TYPE_CHECKING:
-    from refimpl import Scene, Solution
     from refimpl.sensitivities.budget import Budget, Budgets
 
 # number of a budget, its name in the table
@@ -19,22 +17,6 @@ NAMES = {
     "max_pressure": "f_max",
     "binormal_force": "Q",
 }
-
-
-def hindrance(solution: Solution, approach: float | None) -> str:
-    """Why a solve can have no budget, in words; empty where it can. ``approach`` (m): as prescribed."""
-    if approach is not None:
-        return "it is about the scene's load, and this is at a prescribed approach"
-    return "" if solution.certified else "the solution's certificate does not hold"
-
-
-def made(scene: Scene, solution: Solution, tolerances: Mapping[str, float]) -> Budgets:
-    """The budgets, and a line for who waits. Raises as `refimpl.sensitivities.budget` does."""
-    from refimpl.sensitivities.budget import budget
-
-    with StatusLine() as line:
-        line.show("uncertainty budget: what every parameter changes")
-        return budget(scene, solution, tolerances)
 
 
 def document(budgets: Budgets) -> dict[str, object]:
@@ -51,21 +33,19 @@ def table(budgets: Budgets) -> str:
     """Parts of each number in per cent of it, and per cents that it changes by for one of a parameter."""
     header = ["", *(NAMES[number] for number in budgets.numbers)]
     numbers = list(budgets.numbers.values())
-    rows = [
-        ["numerical", *(_share(part, part.numerical) for part in numbers)],
-        ["input", *(_share(part, part.input) for part in numbers)],
-        *(
-            [f"  {name}, {tolerance:.2g}", *(_share(part, part.inputs[name]) for part in numbers)]
+    widths: dict[str, list[float | None]] = {
+        "numerical": [part.numerical for part in numbers],
+        "input": [part.input for part in numbers],
+        **{
+            f"  {name}, {tolerance:.2g}": [part.inputs[name] for part in numbers]
             for name, tolerance in budgets.tolerances.items()
-        ),
-        ["sampling", *(_share(part, part.sampling) for part in numbers)],
-        ["model form", *(_share(part, part.model_form) for part in numbers)],
-        *(
-            [f"  {source}", *(_share(part, part.sources[source]) for part in numbers)]
-            for source in numbers[0].sources
-        ),
-        ["total", *(_share(part, part.total) for part in numbers)],
-    ]
+        },
+        "sampling": [part.sampling for part in numbers],
+        "model form": [part.model_form for part in numbers],
+        **{f"  {source}": [part.sources[source] for part in numbers] for source in numbers[0].sources},
+        "total": [part.total for part in numbers],
+    }
+    rows = [[name, *map(_share, numbers, of_name)] for name, of_name in widths.items()]
     changes = [
         [name, *(_relative(budgets, number, name) for number in budgets.numbers)]
         for name in budgets.derivatives.parameters

@@ -11,12 +11,9 @@ from typing import TYPE_CHECKING, Any
 from verification.cli import contestant_report, suite_table
 from verification.cli.contestant_report import Judged
 from verification.cli.options import Options, declare, option, output_file
-from verification.cli.output import check_suffix, columns, emit, select_or_refuse
+from verification.cli.output import check_suffix, columns, emit, refusal, select_or_refuse
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
-
     from verification.framework.case import Result
     from verification.solver_suite.check import Check
     from verification.solver_suite.process import Source
@@ -74,22 +71,26 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def chosen(options: argparse.Namespace) -> bool:
     """True if a solver is named. Raises `InputError` for its options without one."""
-    from refimpl.errors import InputError
-
     if options.solver is not None or options.exec is not None:
         return True
     for name in OPTIONS:
         if (value := getattr(options, name.removeprefix("--"))) is not None:
-            raise InputError(name, value, "nothing without --solver or --exec")
+            raise refusal(name, value, "nothing without --solver or --exec")
     return False
 
 
 def run(options: argparse.Namespace) -> int:
     """Run or list the suite; status 1 when a case failed or broke, or none passed."""
     from verification.framework.case import readable
+    from verification.framework.files import write_text
     from verification.solver_suite import convergence, suite
+    from verification.solver_suite.process import Ended
 
-    among = _among(options)
+    if options.discretisation == "other" and options.thorough:
+        raise refusal("--thorough", True, "nothing beside --discretisation other")
+    among = suite.thorough() if options.thorough else suite.suite()
+    if options.discretisation == "other":
+        among = convergence.CASES
     checks = select_or_refuse(options.only, lambda: suite.select(options.only, among))
     check_suffix("--table", options.table, suite_table.SUFFIXES)
     if options.list:
@@ -101,21 +102,13 @@ def run(options: argparse.Namespace) -> int:
     document = contestant_report.document(judged, identity_of(options), stated)
     emit(document, options.json, contestant_report.text(readable(name), judged))
     if options.table is not None:
-        _write_table(options.table, document["contestant"], judged.results)
-    _end_as(judged.ended)
+        ours = suite_table.run_entry(document["contestant"], suite.VERSION, judged.results)
+        write_text(suite_table.text_of(options.table.suffix, [ours, *suite_table.published()]), options.table)
+    if isinstance(judged.ended, Ended):  # as the signal would have, once what is judged is shown and written
+        os.kill(os.getpid(), judged.ended.number)
+    if judged.ended is not None:
+        raise judged.ended
     return convergence.exit_status(judged.results) if judged.of_convergence else judged.run.exit_status
-
-
-def _among(options: argparse.Namespace) -> tuple[Check, ...]:
-    """The suite, with further problems, or the limits and orders in its place."""
-    from refimpl.errors import InputError
-    from verification.solver_suite import convergence, suite
-
-    if options.discretisation == "other":
-        if options.thorough:
-            raise InputError("--thorough", True, "nothing beside --discretisation other")
-        return convergence.CASES
-    return suite.thorough() if options.thorough else suite.suite()
 
 
 def _judged(
@@ -157,25 +150,6 @@ def _judged(
     seconds = time.perf_counter() - start
     of_convergence = options.discretisation == "other"
     return Judged(checks, tuple(results), tuple(options.only), of_convergence, tuple(left), ended, seconds)
-
-
-def _write_table(path: Path, entry: Mapping[str, Any], results: Sequence[Result]) -> None:
-    """Write the run beside the published codes."""
-    from verification.framework.files import write_text
-    from verification.solver_suite import suite
-
-    ours = suite_table.run_entry(entry, suite.VERSION, results)
-    write_text(suite_table.text_of(path.suffix, [ours, *suite_table.published()]), path)
-
-
-def _end_as(ended: BaseException | None) -> None:
-    """End as the signal or Ctrl-C would have, once what is judged is shown and written."""
-    from verification.solver_suite.process import Ended
-
-    if isinstance(ended, Ended):
-        os.kill(os.getpid(), ended.number)
-    if ended is not None:
-        raise ended
 
 
 def identity_of(options: argparse.Namespace) -> dict[str, str | None]:

@@ -113,10 +113,17 @@ def table(name: str, judged: Judged) -> str:
 
     done = judged.run
     ran = [r for r in done.results if r.status != "unavailable"]
-    rows = [[r.status, r.id, with_unit(r), f"{r.seconds:.1f} s"] for r in ran]
+    units = ["relative" if r.metric == "relative" else r.unit for r in ran]  # a relative error has none else
+    errors = [f"{judgement(r)} {unit}" if judgement(r) else "" for r, unit in zip(ran, units, strict=True)]
+    rows = [[r.status, r.id, error, f"{r.seconds:.1f} s"] for r, error in zip(ran, errors, strict=True)]
     reasons = [[r.id, reason(r)] for r in ran if r.status != "pass"]
     counts = ", ".join(f"{number} {status}" for status, number in done.counts.items())
-    parts = [columns(rows, indent=""), columns(reasons), *_not_applicable(done)]
+    parts = [columns(rows, indent=""), columns(reasons)]
+    left_out = [r for r in done.results if r.status == "unavailable"]
+    if left_out:
+        ids = {r.note: [o.id.partition("/")[2] for o in left_out if o.note == r.note] for r in left_out}
+        lines = [wrapped(", ".join(of_note), f"  {note}: ") for note, of_note in ids.items()]
+        parts.append("\n".join(["not applicable, and not passed:", *lines]))
     if listed := of_results(done.results):
         parts.append("problems of the covering design fail mostly where:\n  " + "\n  ".join(listed))
     if judged.unseen:
@@ -128,24 +135,8 @@ def table(name: str, judged: Judged) -> str:
     return "\n\n".join([part for part in parts if part] + [f"{name}: {counts}; {done.seconds:.0f} s"])
 
 
-def with_unit(result: Result) -> str:
-    """The judgement in its unit; a relative error has none but that word."""
-    unit = "relative" if result.metric == "relative" else result.unit
-    return f"{judgement(result)} {unit}" if judgement(result) else ""
-
-
 def reason(result: Result) -> str:
     """Why there is no verdict; or what was claimed, and what is known of the failure."""
     if result.status == "error":
         return result.note
     return f"{result.claim}. Found: {result.note}" if result.note else result.claim
-
-
-def _not_applicable(done: Run) -> list[str]:
-    left_out = [r for r in done.results if r.status == "unavailable"]
-    reasons = dict.fromkeys(r.note for r in left_out)
-    lines = [
-        wrapped(", ".join(r.id.partition("/")[2] for r in left_out if r.note == note), f"  {note}: ")
-        for note in reasons
-    ]
-    return ["\n".join(["not applicable, and not passed:", *lines])] if lines else []

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from refimpl.driver.refined import Forecast
     from refimpl.planning.plan import Plan
     from refimpl.planning.terms import Term
-    from refimpl.scene.resolution import Resolution
 
 
 def explained(options: Options, plan: Plan, scene: str, expected: Forecast | None = None) -> str:
@@ -27,20 +26,17 @@ def explained(options: Options, plan: Plan, scene: str, expected: Forecast | Non
     demand = f"requested accuracy: {plan.demand:.2g}; neglected terms may add up to {plan.budget:.2g}"
     rows = [["term", "", "change of mu", "of A", "why"], *(_row(term) for term in plan.terms)]
     size = "refined" if options.grid is None else f"{plan.grid} elements"
+    solved = "nothing is solved"
+    if expected is not None:
+        solved = f"solved are only {' and '.join(map(str, expected.solved))} elements, for the forecast"
     return "\n\n".join(
         (
-            f"{scene}: {size}, method {plan.method}; {_solved(expected)}\n{demand}",
+            f"{scene}: {size}, method {plan.method}; {solved}\n{demand}",
             columns(rows),
             "changes are relative, and expected not to be exceeded in 19 of 20 scenes",
             columns([*_expectations(options, plan), *_forecast(options, expected)]),
         )
     )
-
-
-def _solved(expected: Forecast | None) -> str:
-    if expected is None:
-        return "nothing is solved"
-    return f"solved are only {' and '.join(str(grid) for grid in expected.solved)} elements, for the forecast"
 
 
 def _forecast(options: Options, expected: Forecast | None) -> list[list[str]]:
@@ -55,7 +51,12 @@ def _forecast(options: Options, expected: Forecast | None) -> list[list[str]]:
 
 def document(options: Options, plan: Plan, scene: str, expected: Forecast | None = None) -> dict[str, object]:
     """Return the plan for JSON, in SI units; one number of elements is that along the longer side."""
-    resolved = _resolution(options, plan)
+    resolved = resolution(options.scene, plan.grid, plan.demand)
+    forecast: dict[str, object] | None = None
+    if expected is not None:
+        numbers = {name: getattr(expected, name) for name in ("seconds", "memory", "refusal")}
+        solved = [list(grid.shape) for grid in expected.solved]
+        forecast = {"grid": list(expected.grid.shape), **numbers, "solved": solved}
     return {
         "scene": scene,
         "method": plan.method,
@@ -67,45 +68,13 @@ def document(options: Options, plan: Plan, scene: str, expected: Forecast | None
         "expected": asdict(plan.contact),
         "resolution": None if resolved is None else asdict(resolved),
         "memory": plan.memory,
-        "forecast": None if expected is None else _forecast_document(expected),
-    }
-
-
-def _forecast_document(expected: Forecast) -> dict[str, object]:
-    return {
-        "grid": list(expected.grid.shape),
-        "seconds": expected.seconds,
-        "memory": expected.memory,
-        "refusal": expected.refusal,
-        "solved": [list(grid.shape) for grid in expected.solved],
+        "forecast": forecast,
     }
 
 
 def _row(term: Term) -> list[str]:
-    effect = term.effect
-    return [
-        term.label,
-        "in" if term.included else "out",
-        _size(effect.friction),
-        _size(effect.area),
-        term.reason,
-    ]
-
-
-def _size(change: float) -> str:
-    return f"{change:.1e}" if change else "0"
-
-
-def _resolution(options: Options, plan: Plan) -> Resolution | None:
-    return resolution(options.scene, plan.grid, plan.demand)
-
-
-def _resolved(resolved: Resolution, *, refined: bool) -> str:
-    if refined:  # the grid is not known yet
-        return f"{resolved.required:.3g} required by the accuracy"
-    found = resolved.elements
-    missing = resolved.detail.curvature**2 / 8 / found**2
-    return f"{found:.3g}: rms slopes are seen {missing:.1e} too small"
+    sizes = (f"{change:.1e}" if change else "0" for change in (term.effect.friction, term.effect.area))
+    return [term.label, "in" if term.included else "out", *sizes, term.reason]
 
 
 def _expectations(options: Options, plan: Plan) -> list[list[str]]:
@@ -120,8 +89,12 @@ def _expectations(options: Options, plan: Plan) -> list[list[str]]:
         ["half-turn symmetry", "yes: effects of odd order vanish" if contact.symmetric else "none"],
     ]
     refined = options.grid is None
-    if (resolved := _resolution(options, plan)) is not None:
-        rows.append([f"elements per {resolved.detail.name}", _resolved(resolved, refined=refined)])
+    if (resolved := resolution(options.scene, grid, plan.demand)) is not None:
+        missing = resolved.detail.curvature**2 / 8 / resolved.elements**2
+        seen = f"{resolved.elements:.3g}: rms slopes are seen {missing:.1e} too small"
+        if refined:  # the grid is not known yet
+            seen = f"{resolved.required:.3g} required by the accuracy"
+        rows.append([f"elements per {resolved.detail.name}", seen])
     slope, error = expected_error(discretise(options.scene, grid))
     if error > ALLOWED:
         told = f"slopes of {math.degrees(slope):.2g} degrees: N at a given approach may be off by {error:.0%}"

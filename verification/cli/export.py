@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from verification.cli.output import columns, emit, select_or_refuse
+from verification.cli.output import columns, emit, refusal, select_or_refuse
 
 
 def run(options: argparse.Namespace) -> int:
@@ -12,7 +12,6 @@ def run(options: argparse.Namespace) -> int:
 
     Those of a kind that no proof covers are named too, and are no failure.
     """
-    from refimpl.errors import InputError
     from verification.framework.files import Progress
     from verification.framework.threads import limited_to_one_thread
     from verification.solver_suite import suite
@@ -39,7 +38,7 @@ def run(options: argparse.Namespace) -> int:
             bounds.append(found.bounds.pressure / (float(found.pressure.max()) or 1.0))
         progress.close()
         if not bounds:
-            raise InputError("--only", options.only, "cases with a problem of at most 64 elements a side")
+            raise refusal("--only", options.only, "cases with a problem of at most 64 elements a side")
         version = export.close()
     document = {
         "folder": str(options.export),

@@ -8,7 +8,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from verification.cli.options import Options, option, output_file
-from verification.cli.output import PICTURES, check_outputs, check_suffix, columns, emit, files_of, wrapped
+from verification.cli.output import (
+    PICTURES,
+    check_outputs,
+    check_suffix,
+    columns,
+    emit,
+    files_of,
+    refusal,
+    wrapped,
+)
 
 if TYPE_CHECKING:
     from refimpl import Scene
@@ -56,15 +65,13 @@ def surface(options: argparse.Namespace) -> int:
         from verification.cli.plot_surface import draw_local_error
 
         draw_local_error(verdict, options.plot)
-    document = _document(options.scene, note, verdict)
-    emit(document, options.json, _text(options.scene, note, verdict))
+    emit(_document(options.scene, note, verdict), options.json, _text(options.scene, note, verdict))
     return 0
 
 
 def _posed(options: argparse.Namespace) -> tuple[Scene, str]:
     """The scene, and what was assumed where a surface's file is all there is."""
     import refimpl
-    from refimpl.errors import InputError
     from refimpl.sensitivities.surface_verdict import pressed_on_a_flat
 
     given = {name: value for name in FILE_OPTIONS if (value := getattr(options, name)) is not None}
@@ -73,13 +80,11 @@ def _posed(options: argparse.Namespace) -> tuple[Scene, str]:
         if given:
             name, value = next(iter(given.items()))
             allowed = "none beside a scene, which states it"
-            raise InputError(f"--{name.replace('_', '-')}", value, allowed)
+            raise refusal(f"--{name.replace('_', '-')}", value, allowed)
         return refimpl.read_scene(options.scene), ""
     if not path.is_file():
         known = ", ".join(refimpl.shipped_scenes())
-        raise InputError(
-            "scene", options.scene, f"a scene's file (.toml), one of {known}, or a surface's file"
-        )
+        raise refusal("scene", options.scene, f"a scene's file (.toml), one of {known}, or a surface's file")
     reading = {name: given[name] for name in ("unit", "pixel_size") if name in given}
     taken = ALONE | {name: given[name] for name in ALONE if name in given}
     scene = pressed_on_a_flat(

@@ -10,12 +10,10 @@ from typing import TYPE_CHECKING
 from verification.cli.options import (
     SCENE,
     Options,
-    Parsers,
     loads,
     names,
     option,
     output_file,
-    subcommand,
 )
 from verification.cli.output import (
     PICTURES,
@@ -54,19 +52,6 @@ OPTIONS: Options = {
     "--store": option("keep finished solves there, and go on", metavar="FILE.json", type=output_file),
     "--plot": option("draw data, fit, ellipse and residuals", metavar="FILE.png", type=output_file),
 }
-
-
-def add_parser(commands: Parsers) -> None:
-    """Declare the subcommand."""
-    subcommand(
-        commands,
-        "identify",
-        run,
-        OPTIONS,
-        help="find tau and beta from friction measured at several loads",
-        description="Find tau and beta, with 95 % intervals, from friction measured at several loads.",
-        epilog=EPILOG,
-    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -109,7 +94,7 @@ def document(found: Identification) -> dict[str, object]:
     return {
         "tau": _interval(found.values["tau"]),
         "beta": _interval(found.values["beta"]),
-        "fitted": {name: _interval(found.values[name]) for name in _further(found)},
+        "fitted": {name: _interval(found.values[name]) for name in tuple(found.values)[2:]},
         "covariance": found.covariance.tolist(),
         "identified": found.is_identified,
         "method": found.method,
@@ -150,11 +135,6 @@ def _finite(number: float) -> float | None:
 
 def _interval(interval: Interval) -> dict[str, float | None]:
     return {"value": interval.value, "low": interval.low, "high": _finite(interval.high)}
-
-
-def _further(found: Identification) -> tuple[str, ...]:
-    """Names of the parameters fitted beside tau and beta."""
-    return tuple(found.values)[2:]
 
 
 def _scaled(name: str) -> tuple[str, float]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Iterator, Mapping, MutableMapping
+from collections import UserDict
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -20,31 +21,19 @@ from verification.sweep.run import code_digest, file_digest
 FORMAT = "rough-friction identify 1"
 
 
-class SolveStore(MutableMapping[str, Mapping[str, Any]]):
+class SolveStore(UserDict[str, Mapping[str, Any]]):
     """Responses by key; the file is rewritten in one step after each solve.
 
     Raises InputError for a file that is none of these, or is damaged.
     """
 
     def __init__(self, path: Path) -> None:
-        self._path, self._solves = path, _read(path) if os.path.exists(path) else {}
-
-    def __getitem__(self, key: str) -> Mapping[str, Any]:
-        found: Mapping[str, Any] = self._solves[key]
-        return found
+        super().__init__()
+        self._path, self.data = path, _read(path) if os.path.exists(path) else {}
 
     def __setitem__(self, key: str, value: Mapping[str, Any]) -> None:
-        self._solves[key] = json.loads(json.dumps(value))
-        write_text(to_json({"format": FORMAT, "solves": self._solves}), self._path)
-
-    def __delitem__(self, key: str) -> None:
-        del self._solves[key]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._solves)
-
-    def __len__(self) -> int:
-        return len(self._solves)
+        super().__setitem__(key, json.loads(json.dumps(value)))
+        write_text(to_json({"format": FORMAT, "solves": self.data}), self._path)
 
 
 def _read(path: Path) -> dict[str, Any]:

@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING
 
 from verification.cli.options import (
     Options,
-    Parsers,
     name_or_number,
     one_or_two_lengths,
     option,
     output_file,
-    subcommand,
 )
 from verification.cli.output import (
     PICTURES,
@@ -56,19 +54,6 @@ OPTIONS: Options = {
     "--fit": option("fit a random surface, print it as TOML", choices=("gaussian", "self-affine")),
     "--plot": option("map, autocorrelation, spectrum as PNG", metavar="FILE", type=output_file),
 }
-
-
-def add_parser(commands: Parsers) -> None:
-    """Declare the subcommand."""
-    subcommand(
-        commands,
-        "inspect",
-        run,
-        OPTIONS,
-        help="a surface file: points, units, orientation, roughness parameters, picture",
-        description="Read a file of heights as a scene would, and print what it holds and how rough it is.",
-        epilog=EPILOG,
-    )
 
 
 def run(options: argparse.Namespace) -> int:

@@ -10,7 +10,7 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.options import Options, Parsers, option, output_text, subcommand
+from verification.cli.options import Options, option, output_text
 from verification.cli.output import check_outputs, columns, emit, show
 
 if TYPE_CHECKING:
@@ -32,19 +32,6 @@ OPTIONS: Options = {
 }
 
 
-def add_parser(commands: Parsers) -> None:
-    """Declare the subcommand."""
-    subcommand(
-        commands,
-        "keys",
-        run,
-        OPTIONS,
-        help="every key of scene and study files: type, unit, default, allowed values, meaning",
-        description="Print the keys of scene and study files, or write them as a page.",
-        epilog=EPILOG,
-    )
-
-
 def run(options: argparse.Namespace) -> int:
     """Print the keys; status 1 where none has the word."""
     from verification.framework.files import write_text
@@ -57,7 +44,11 @@ def run(options: argparse.Namespace) -> int:
         write_text(page(), options.markdown)
         show(f"{options.markdown}: {sum(map(len, _tables().values()))} keys")
         return 0
-    found = {title: [key for key in keys if _has(key, options.word)] for title, keys in _tables().items()}
+    word = options.word.lower()
+    found = {
+        title: [key for key in keys if word in f"{key.name} {key.meaning}".lower()]
+        for title, keys in _tables().items()
+    }
     document = {title: [asdict(key) for key in keys] for title, keys in found.items() if keys}
     emit(document, options.json, _table(found))
     return 0 if document else 1
@@ -81,7 +72,8 @@ def _markdown_table(name: str, keys: tuple[Key, ...]) -> str:
     for key in keys:
         allowed = "" if key.allowed == key.kind else key.allowed
         where = [places.get(key.name, "")] if places else []
-        cells = [f"`{key.name}`", key.kind, key.unit, _code(key.default), allowed, *where, key.meaning]
+        default = key.default if key.default in ("required", "-") else f"`{key.default}`"
+        cells = [f"`{key.name}`", key.kind, key.unit, default, allowed, *where, key.meaning]
         lines.append(_row(cells))
     return "\n".join(lines)
 
@@ -114,19 +106,11 @@ def also_in(name: str) -> dict[str, str]:
     return named
 
 
-def _code(default: str) -> str:
-    return default if default in ("required", "-") else f"`{default}`"
-
-
 def _tables() -> Tables:
     from refimpl.scene.keys import scene_keys
     from verification.sweep.keys import study_keys
 
     return {**scene_keys(), **study_keys()}
-
-
-def _has(key: Key, word: str) -> bool:
-    return word.lower() in f"{key.name} {key.meaning}".lower()
 
 
 def _table(found: Mapping[str, list[Key]]) -> str:

@@ -1,6 +1,11 @@
 """Subcommands declared by tables of options, and the types of their arguments.
 
 A type raises `argparse.ArgumentTypeError`, which argparse prints.
+
+>>> gigabytes("1.5"), elements("128"), elements("128x64"), lengths("83e-6x204e-6")
+(1500000000.0, 128, (128, 64), (8.3e-05, 0.000204))
+>>> one_or_two_lengths("1e-6"), one_or_two_lengths("1e-6,2e-6"), numbers("-10,3.5"), loads("5,80")
+((1e-06, 1e-06), (1e-06, 2e-06), [-10.0, 3.5], (5.0, 80.0))
 """
 
 from __future__ import annotations
@@ -70,15 +75,6 @@ def output_text(text: str) -> Path:
     return Path(text) if text == "-" else output_file(text)
 
 
-def gigabytes(text: str) -> float:
-    """A memory: GB, returned in bytes.
-
-    >>> gigabytes("1.5")
-    1500000000.0
-    """
-    return 1e9 * _split(text, float, f"expected a number of GB, not {text!r}")[0]
-
-
 def on_or_off(text: str) -> bool:
     """A switch.
 
@@ -90,71 +86,16 @@ def on_or_off(text: str) -> bool:
     return text == "on"
 
 
-def elements(text: str) -> int | tuple[int, int]:
-    """A grid: a number of elements, or two.
-
-    >>> elements("128"), elements("128x64")
-    (128, (128, 64))
-    """
-    expected = f"expected a number of elements, or two like 128x64, not {text!r}"
-    numbers = _split(text, int, expected, "x", (1, 2))
-    return numbers[0] if len(numbers) == 1 else (numbers[0], numbers[1])
-
-
 def grids(text: str) -> list[int]:
     """A list of grids, rising.
 
     >>> grids("128,64")
     [64, 128]
     """
-    found = sorted(set(_split(text, int, f"{text!r} is no list of grids like 64,128", ",", None)))
+    found: list[int] = _grids(text)
     if found[0] < 4:
         raise argparse.ArgumentTypeError(f"{text!r} has a grid of fewer than 4 elements a side")
     return found
-
-
-def lengths(text: str) -> tuple[float, float]:
-    """A size: two lengths (m).
-
-    >>> lengths("83e-6x204e-6")
-    (8.3e-05, 0.000204)
-    """
-    x, y = _split(text, float, f"expected two lengths in m like 2e-3x1e-3, not {text!r}", "x", (2,))
-    return x, y
-
-
-def one_or_two_lengths(text: str) -> tuple[float, float]:
-    """One length (m) for both axes, or two.
-
-    >>> one_or_two_lengths("1e-6"), one_or_two_lengths("1e-6,2e-6")
-    ((1e-06, 1e-06), (1e-06, 2e-06))
-    """
-    expected = f"expected a length in m, or two with a comma between, not {text!r}"
-    found = _split(text, float, expected, ",", (1, 2))
-    return found[0], found[-1]
-
-
-def number(text: str) -> float:
-    """A finite number."""
-    return _split(text, _finite, f"{text!r} is not a finite number")[0]
-
-
-def numbers(text: str) -> list[float]:
-    """Finite numbers with commas between them.
-
-    >>> numbers("-10,3.5")
-    [-10.0, 3.5]
-    """
-    return _split(text, _finite, f"{text!r} is not a list of numbers like -3,0,3", ",", None)
-
-
-def loads(text: str) -> tuple[float, ...]:
-    """Loads (N) with commas between them.
-
-    >>> loads("5,80")
-    (5.0, 80.0)
-    """
-    return tuple(_split(text, float, f"{text!r} is no list of numbers like 5,80", ",", None))
 
 
 def names(text: str) -> tuple[str, ...]:
@@ -175,21 +116,25 @@ def name_or_number(text: str) -> str | int:
     return int(text) if text.isdecimal() else text
 
 
-def _split(
-    text: str,
-    kind: Callable[[str], Value],
+def _parts(
     expected: str,
+    kind: Callable[[str], Value],
+    made: Callable[[list[Value]], Any],
     separator: str | None = None,
     counts: Sequence[int] | None = (1,),
-) -> list[Value]:
-    """The parts of a text as values, as many as one of ``counts``; ``expected`` is the refusal."""
-    try:
-        found = [kind(part) for part in ([text] if separator is None else text.split(separator))]
-    except ValueError as wrong:
-        raise argparse.ArgumentTypeError(expected) from wrong
-    if counts is not None and len(found) not in counts:
-        raise argparse.ArgumentTypeError(expected)
-    return found
+) -> Callable[[str], Any]:
+    """Return the type of a text of as many values as one of ``counts``; ``expected`` is its refusal."""
+
+    def parts(text: str) -> Any:
+        try:
+            found = [kind(part) for part in ([text] if separator is None else text.split(separator))]
+        except ValueError as wrong:
+            raise argparse.ArgumentTypeError(expected.format(text)) from wrong
+        if counts is not None and len(found) not in counts:
+            raise argparse.ArgumentTypeError(expected.format(text))
+        return made(found)
+
+    return parts
 
 
 def _finite(text: str) -> float:
@@ -198,6 +143,34 @@ def _finite(text: str) -> float:
         raise ValueError(text)
     return found
 
+
+gigabytes = _parts("expected a number of GB, not {!r}", float, lambda found: 1e9 * found[0])
+"""A memory: GB, returned in bytes."""
+elements = _parts(
+    "expected a number of elements, or two like 128x64, not {!r}",
+    int,
+    lambda found: found[0] if len(found) == 1 else tuple(found),
+    "x",
+    (1, 2),
+)
+"""A grid: a number of elements, or two."""
+lengths = _parts("expected two lengths in m like 2e-3x1e-3, not {!r}", float, tuple, "x", (2,))
+"""A size: two lengths (m)."""
+one_or_two_lengths = _parts(
+    "expected a length in m, or two with a comma between, not {!r}",
+    float,
+    lambda found: (found[0], found[-1]),
+    ",",
+    (1, 2),
+)
+"""One length (m) for both axes, or two."""
+number = _parts("{!r} is not a finite number", _finite, lambda found: found[0])
+"""A finite number."""
+numbers = _parts("{!r} is not a list of numbers like -3,0,3", _finite, list, ",", None)
+"""Finite numbers with commas between them."""
+loads = _parts("{!r} is no list of numbers like 5,80", float, tuple, ",", None)
+"""Loads (N) with commas between them."""
+_grids = _parts("{!r} is no list of grids like 64,128", int, lambda found: sorted(set(found)), ",", None)
 
 SCENE = option("a TOML file, or the name of a shipped scene", metavar="SCENE")
 JSON = option("write the result as JSON ('-' for standard output)", metavar="FILE", type=output_text)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Self, TypeVar
 from verification.framework.files import is_stream, to_json, write_text
 
 if TYPE_CHECKING:
-    from refimpl import Scene
+    from refimpl import InputError, Scene
     from verification.framework.case import Result
 
 WIDTH = 100
@@ -24,12 +24,17 @@ PICTURES = (".png", ".svg", ".pdf")
 Selected = TypeVar("Selected")
 
 
+def refusal(field: str, value: object, allowed: str) -> InputError:
+    """Return an `InputError`. Its package is imported here, so that --help does not wait for it."""
+    from refimpl.errors import InputError
+
+    return InputError(field, value, allowed)
+
+
 def check_outputs(inputs: Iterable[Path], **outputs: Path | Sequence[Path] | None) -> None:
     """Raise InputError for an output, by its option's name, that would replace a file that is read, or be
     replaced by another option's. Devices and pipes replace nothing, but standard output has room for one.
     """
-    from refimpl.errors import InputError
-
     read = [path for path in inputs if os.path.isfile(path)]  # no shipped scene's name, however long
     written = [
         (option, path)
@@ -39,30 +44,26 @@ def check_outputs(inputs: Iterable[Path], **outputs: Path | Sequence[Path] | Non
     ]
     for option, path in written:
         if any(_one_file(path, other) for other in read):
-            raise InputError(f"--{option}", str(path), "another file than the inputs")
+            raise refusal(f"--{option}", str(path), "another file than the inputs")
     for (first, path), (option, again) in itertools.combinations(written, 2):
         if option != first and _one_file(path, again):
-            raise InputError(f"--{option}", str(again), f"another file than that of --{first}")
+            raise refusal(f"--{option}", str(again), f"another file than that of --{first}")
 
 
 def select_or_refuse(only: Sequence[str], select: Callable[[], Selected]) -> Selected:
     """Return what ``select`` finds; raises InputError where the patterns of ``--only`` match no case."""
-    from refimpl.errors import InputError
-
     try:
         return select()
     except LookupError as nothing:
-        raise InputError("--only", only, f"the id of a case ({nothing}; see --list)") from nothing
+        raise refusal("--only", only, f"the id of a case ({nothing}; see --list)") from nothing
 
 
 def check_suffix(option: str, path: Path | None, suffixes: Sequence[str]) -> None:
     """Raise InputError, before any work, for a file whose name ends in none of the suffixes."""
-    from refimpl.errors import InputError
-
     if path is not None and path.suffix not in suffixes:
         *others, last = suffixes
         ends = f"{', '.join(others)} or {last}" if others else last
-        raise InputError(option, str(path), f"a file name that ends in {ends}")
+        raise refusal(option, str(path), f"a file name that ends in {ends}")
 
 
 def _one_file(path: Path, other: Path) -> bool:
@@ -83,7 +84,12 @@ def files_of(scene: Scene) -> list[Path]:
 def emit(document: object, path: Path | None, table: str) -> None:
     """Write the document where asked and show the table; '-' prints the document in the table's place."""
     if path == Path("-"):
-        show(to_json(document, ascii_only=not _takes(to_json(document))).rstrip("\n"))
+        text = to_json(document)
+        try:
+            text.encode(sys.stdout.encoding or "utf-8")
+        except UnicodeEncodeError:
+            text = to_json(document, ascii_only=True)
+        show(text.rstrip("\n"))
         return
     try:
         if path is not None:
@@ -105,12 +111,6 @@ def plain(item: object) -> object:
     return None if isinstance(item, float) and not math.isfinite(item) else item
 
 
-def emit_early(document: object, path: Path | None, table: str) -> None:
-    """`emit` what there is before more work; no document where it could not be replaced, '-' or a pipe."""
-    if path != Path("-"):
-        emit(document, None if path is None or is_stream(path) else path, table)
-
-
 def show(text: str) -> None:
     """Print a text, what a terminal would obey escaped.
 
@@ -122,15 +122,6 @@ def show(text: str) -> None:
         print("\n".join(map(printable, text.split("\n"))), flush=True)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _takes(text: str) -> bool:
-    """Whether standard output can encode the text."""
-    try:
-        text.encode(sys.stdout.encoding or "utf-8")
-    except UnicodeEncodeError:
-        return False
-    return True
 
 
 def columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:

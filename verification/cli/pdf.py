@@ -13,6 +13,8 @@ import tempfile
 from importlib.util import find_spec
 from pathlib import Path
 
+from verification.cli.output import refusal
+
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 PAPERS = {"a4": "A4", "letter": "letter"}
 """Sizes of paper by the option's value, as CSS names them."""
@@ -42,12 +44,10 @@ def printed(page: Path, paper: str = "a4") -> Path:
 
     Raises InputError where no browser is installed or the browser fails.
     """
-    from refimpl.errors import InputError
-
     target = page.with_suffix(".pdf").resolve()
     found = browser()
     if found is None:
-        raise InputError("--pdf", True, f"an installed browser, one of {', '.join(BROWSERS)}")
+        raise refusal("--pdf", True, f"an installed browser, one of {', '.join(BROWSERS)}")
     with tempfile.TemporaryDirectory() as folder:
         sized, made = Path(folder) / page.name, Path(folder) / "made.pdf"
         rule = f"<style>@page {{ size: {PAPERS[paper]}; }}</style>\n</head>"
@@ -55,20 +55,16 @@ def printed(page: Path, paper: str = "a4") -> Path:
         command = [found, *FLAGS, f"--user-data-dir={folder}/profile", f"--print-to-pdf={made}"]
         done = subprocess.run([*command, sized.as_uri()], capture_output=True, text=True)
         if done.returncode != 0 or not made.exists():
-            raise InputError("--pdf", True, f"a browser that prints ({done.stderr.strip()[-200:]})")
+            raise refusal("--pdf", True, f"a browser that prints ({done.stderr.strip()[-200:]})")
         beside = target.with_name(f".{target.name}.new")
         if compacts():
-            _compacted(made, beside)
+            import pikepdf
+
+            pikepdf.settings.set_flate_compression_level(9)
+            packed = pikepdf.ObjectStreamMode.generate
+            with pikepdf.open(made) as document:
+                document.save(beside, object_stream_mode=packed, compress_streams=True, recompress_flate=True)
         else:
             shutil.copyfile(made, beside)
         os.replace(beside, target)
     return target
-
-
-def _compacted(made: Path, target: Path) -> None:
-    import pikepdf
-
-    pikepdf.settings.set_flate_compression_level(9)
-    with pikepdf.open(made) as document:
-        packed = pikepdf.ObjectStreamMode.generate
-        document.save(target, object_stream_mode=packed, compress_streams=True, recompress_flate=True)

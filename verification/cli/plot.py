@@ -48,8 +48,9 @@ def draw(solution: Solution, scene: Scene, path: Path) -> None:
     """
     view = view_of(solution)
     hertz = hertz_of(scene, solution.normal_force)
+    ratio = 1.0 if view.is_slender else view.size[1] / view.size[0]  # lengths to one scale where they can be
     with print_style():
-        figure, panels = _panels(_map_height(view))
+        figure, panels = _panels(min(max(MAP * ratio, LOWEST_MAP), MAP))
         pressure_map(panels["pressure"], solution, view)
         shear_map(panels["shear"], solution, view)
         gap_map(panels["gap"], solution, view)
@@ -125,12 +126,6 @@ def _with_bar(solution: Solution, name: str, symbol: str, size: float, unit: str
     if not usable(error, value):
         return f"{number} {unit} (not usable)".replace("  ", " ")
     return " ".join(part for part in (number, bar_of(error).replace("+-", "±"), unit) if part)
-
-
-def _map_height(view: View) -> float:
-    """Height of a map in inches; lengths to one scale where the window is not slender."""
-    ratio = 1.0 if view.is_slender else view.size[1] / view.size[0]
-    return min(max(MAP * ratio, LOWEST_MAP), MAP)
 
 
 def _key(axes: Axes, solution: Solution, view: View, hertz: HertzSphere | None) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -29,7 +30,7 @@ class View:
 
     first, last : element indices ``[i, j]``, ``last`` excluded
     peak : element of p_max; of several, that nearest to the middle of the load
-    origin, size : corner and sides of the window (m), from the domain's corner
+    spacings : edges of an element (m)
     whole : True if the window is the domain
     length, pressure, gap : units
     """
@@ -37,8 +38,7 @@ class View:
     first: tuple[int, int]
     last: tuple[int, int]
     peak: tuple[int, int]
-    origin: tuple[float, float]
-    size: tuple[float, float]
+    spacings: tuple[float, float]
     whole: bool
     length: Unit
     pressure: Unit
@@ -50,11 +50,25 @@ class View:
         return field[i:k, j:n]
 
     @property
+    def origin(self) -> tuple[float, float]:
+        """Corner of the window (m), from the domain's corner."""
+        return self.first[0] * self.spacings[0], self.first[1] * self.spacings[1]
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Sides of the window (m)."""
+        return _sides(self.first, self.last, self.spacings)
+
+    @property
     def extent(self) -> tuple[float, float, float, float]:
         """Left, right, bottom and top in the unit of length."""
         (x, y), (width, height) = self.origin, self.size
         left, right, bottom, top = (s / self.length.size for s in (x, x + width, y, y + height))
         return left, right, bottom, top
+
+    def edges(self, step: int) -> tuple[float, float]:
+        """Edges of a block of ``step`` elements a side, in the unit of length."""
+        return step * self.spacings[0] / self.length.size, step * self.spacings[1] / self.length.size
 
     @property
     def is_slender(self) -> bool:
@@ -67,26 +81,22 @@ def view_of(solution: Solution) -> View:
     import numpy as np
 
     grid = solution.grid
-    first, last = zip(
-        *(_range(np.flatnonzero(solution.contact.any(axis=1 - k)), grid.shape[k]) for k in (0, 1)),
-        strict=True,
-    )
-    first, last = _widened(first, last, grid.shape, grid.spacings)
+    first, last = (0, 0), grid.shape
+    if solution.contact.any():
+        places = np.argwhere(solution.contact)
+        first, last = _widened(places.min(axis=0), places.max(axis=0) + 1, grid.shape, grid.spacings)
     share = math.prod(b - a for a, b in zip(first, last, strict=True)) / grid.elements
     whole = share >= MOST_OF_DOMAIN
     if whole:
         first, last = (0, 0), grid.shape
-    size = tuple((b - a) * d for a, b, d in zip(first, last, grid.spacings, strict=True))
-    origin = tuple(a * d for a, d in zip(first, grid.spacings, strict=True))
     gap = solution.gap[first[0] : last[0], first[1] : last[1]]
     return View(
         first=first,
         last=last,
         peak=peak_of(solution.pressure),
-        origin=(origin[0], origin[1]),
-        size=(size[0], size[1]),
+        spacings=grid.spacings,
         whole=whole,
-        length=unit_at_scale(max(size), LENGTHS),
+        length=unit_at_scale(max(_sides(first, last, grid.spacings)), LENGTHS),
         pressure=unit_at_scale(solution.max_pressure, PRESSURES),
         gap=unit_at_scale(float(np.percentile(gap, 99)), LENGTHS),
     )
@@ -133,25 +143,23 @@ def pooled(field: NDArray[Any], *, lowest: bool = False, most: int = MOST_CELLS)
     return found, step
 
 
-def _range(occupied: NDArray[Any], count: int) -> tuple[int, int]:
-    return (int(occupied[0]), int(occupied[-1]) + 1) if len(occupied) else (0, count)
+def _sides(first: Sequence[int], last: Sequence[int], spacings: tuple[float, float]) -> tuple[float, float]:
+    return (last[0] - first[0]) * spacings[0], (last[1] - first[1]) * spacings[1]
 
 
 def _widened(
-    first: tuple[int, ...], last: tuple[int, ...], shape: tuple[int, int], spacings: tuple[float, float]
+    first: Sequence[int], last: Sequence[int], shape: tuple[int, int], spacings: tuple[float, float]
 ) -> tuple[tuple[int, int], tuple[int, int]]:
     """The ranges with a margin; the shorter side is a third of the longer, where the domain allows."""
-    sides = [(b - a) * d for a, b, d in zip(first, last, spacings, strict=True)]
+    sides = _sides(first, last, spacings)
     margin = MARGIN * max(sides)
     least = (max(sides) + 2 * margin) / SLENDEREST
     low, high = [], []
     for a, b, side, count, d in zip(first, last, sides, shape, spacings, strict=True):
         wanted = max(side + 2 * margin, least, LEAST * d)
         extra = math.ceil((wanted - side) / (2 * d))
-        start = max(a - extra, 0)
-        end = min(b + extra, count)
-        low.append(start)
-        high.append(end)
+        low.append(max(a - extra, 0))
+        high.append(min(b + extra, count))
     return (low[0], low[1]), (high[0], high[1])
 
 
@@ -214,15 +222,9 @@ def domain_map(axes: Axes, solution: Solution, view: View) -> None:
 
 def sections(axes: Axes, solution: Solution, view: View) -> None:
     """Lines of both profiles, through the peak."""
-    x, y = peak_place(solution, view)
-    for line in (axes.axhline(y), axes.axvline(x)):
+    x, y = solution.grid.x[view.peak[0]], solution.grid.y[view.peak[1]]
+    for line in (axes.axhline(y / view.length.size), axes.axvline(x / view.length.size)):
         line.set(color=BLACK, linestyle=(0, (4, 3)), linewidth=0.6)
-
-
-def peak_place(solution: Solution, view: View) -> tuple[float, float]:
-    """Return x and y of the peak's element in the unit of length."""
-    i, j = view.peak
-    return float(solution.grid.x[i]) / view.length.size, float(solution.grid.y[j]) / view.length.size
 
 
 def outline(axes: Axes, where: Mask, view: View, colour: str) -> None:
@@ -232,7 +234,7 @@ def outline(axes: Axes, where: Mask, view: View, colour: str) -> None:
 
     where, step = pooled(where)
     left, _, bottom, _ = view.extent
-    dx, dy = (step * size / count for size, count in zip(_spans(view), _counts(view), strict=True))
+    dx, dy = view.edges(step)
     padded = np.pad(where, 1)
     upright = np.argwhere(padded[1:, 1:-1] != padded[:-1, 1:-1])
     level = np.argwhere(padded[1:-1, 1:] != padded[1:-1, :-1])
@@ -240,15 +242,6 @@ def outline(axes: Axes, where: Mask, view: View, colour: str) -> None:
     if lines:
         placed = np.array(lines, dtype=float) * (dx, dy) + (left, bottom)
         axes.add_collection(LineCollection(list(placed), colors=colour, linewidths=0.7))
-
-
-def _spans(view: View) -> tuple[float, float]:
-    left, right, bottom, top = view.extent
-    return right - left, top - bottom
-
-
-def _counts(view: View) -> tuple[int, int]:
-    return view.last[0] - view.first[0], view.last[1] - view.first[1]
 
 
 def _image(
@@ -272,7 +265,7 @@ def _overlay(axes: Axes, where: Mask, view: View, colour: str) -> None:
 def _show(axes: Axes, picture: NDArray[Any], step: int, view: View, **options: Any) -> Any:
     """Draw blocks of ``step`` elements over the window; the last ones go on beyond it."""
     left, right, bottom, top = view.extent
-    dx, dy = (step * span / count for span, count in zip(_spans(view), _counts(view), strict=True))
+    dx, dy = view.edges(step)
     image = axes.imshow(
         picture, origin="lower",
         extent=(left, left + picture.shape[1] * dx, bottom, bottom + picture.shape[0] * dy),

@@ -12,7 +12,6 @@ if TYPE_CHECKING:
 
 # Okabe and Ito 2008, safe for colour-blind readers
 BLUE, ORANGE, GREEN, PINK, BLACK = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000"
-FORMATS = (".png", ".svg", ".pdf")
 PRINT: Any = {  # sizes in points: at full page width (180 mm) no letter is smaller than 6 points
     "font.size": 8,
     "axes.titlesize": 8,

@@ -5,13 +5,12 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Callable, Mapping
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from verification.cli.options import Options, Parsers, option, subcommand
-from verification.cli.output import StatusLine, check_outputs, columns, emit
+from verification.cli.options import Options, option
+from verification.cli.output import StatusLine, check_outputs, columns, emit, refusal
 from verification.cli.pdf import PAPERS, compacts, printed
 
 EPILOG = """examples:
@@ -30,46 +29,41 @@ OPTIONS: Options = {
 }
 
 
-def add_parser(commands: Parsers) -> None:
-    """Declare the subcommand."""
-    subcommand(
-        commands,
-        "report",
-        run,
-        OPTIONS,
-        help="make the validation report",
-        description="Make the validation report, one HTML file, from a result file of 'verify' and the\n"
-        "committed results of long cases and studies.",
-        epilog=EPILOG,
-    )
-
-
 def run(options: argparse.Namespace) -> int:
     """Make the report and print its path; the exit status is about that, not about the verdicts in it."""
-    from refimpl.errors import InputError
+    from reports.generator import render
     from reports.result_files import name_of, result_paths
+    from reports.results import CaseDataError, ResultFileError
     from verification.framework.files import write_text
 
     results = read_run(options.results)
     against = None if options.against is None else read_run(options.against, "--against")
     folder = options.committed or Path(str(resources.files("reports").joinpath("results")))
     if not folder.is_dir():
-        raise InputError("--committed", str(folder), "a folder of result files")
+        raise refusal("--committed", str(folder), "a folder of result files")
     try:
         files = result_paths(folder)
     except ValueError as twice:
-        raise InputError("--committed", str(folder), f"one result file of a name ({twice})") from twice
-    committed = {name_of(path): _committed(path) for path in files}
+        raise refusal("--committed", str(folder), f"one result file of a name ({twice})") from twice
+    committed = {name_of(path): read_run(path, "--committed") for path in files}
     path = options.output / "report.html"
     read = [options.results, *([] if options.against is None else [options.against]), *files]
     check_outputs(read, output=[path, path.with_suffix(".pdf")], json=options.json)
-    _check_folder(options.output)
-    with StatusLine() as line:
-        page = rendered(results, options.results, committed, folder, against, line.show)
+    above = (options.output, *options.output.absolute().parents)
+    nearest = next(folder for folder in above if os.path.exists(folder))
+    if not (nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)):
+        raise refusal("--output", str(options.output), "a folder that can be written to")
+    try:
+        with StatusLine() as line:
+            page = render(results, committed, against, line.show)
+    except ResultFileError as alien:  # data that no figure can show
+        if isinstance(alien, CaseDataError) and alien.origin is None:
+            raise refusal("--results", str(options.results), f"a result file ({alien})") from alien
+        raise refusal("--committed", str(folder), f"result files ({alien})") from alien
     try:
         options.output.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError, PermissionError) as refused:
-        raise InputError("--output", str(options.output), "a folder that can be written to") from refused
+        raise refusal("--output", str(options.output), "a folder that can be written to") from refused
     write_text(page, path)
     written = [path]
     if options.pdf:
@@ -82,60 +76,23 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def rendered(
-    results: Any,
-    file: Path,
-    committed: Mapping[str, Any],
-    folder: Path,
-    against: Any = None,
-    progress: Callable[[str], None] = lambda _: None,
-) -> str:
-    """The page; raises InputError, naming the file or the folder, for data that no figure can show."""
-    from refimpl.errors import InputError
-    from reports.generator import render
-    from reports.results import CaseDataError, ResultFileError
-
-    try:
-        return render(results, committed, against, progress)
-    except ResultFileError as alien:
-        if isinstance(alien, CaseDataError) and alien.origin is None:
-            raise InputError("--results", str(file), f"a result file ({alien})") from alien
-        raise InputError("--committed", str(folder), f"result files ({alien})") from alien
-
-
-def _check_folder(output: Path) -> None:
-    """Raise InputError, before anything is drawn, unless the folder is there or can be made."""
-    from refimpl.errors import InputError
-
-    nearest = next(folder for folder in (output, *output.absolute().parents) if os.path.exists(folder))
-    if not (nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)):
-        raise InputError("--output", str(output), "a folder that can be written to")
-
-
 def read_run(path: Path, option: str = "--results") -> Any:
-    """A result file of `verify`, checked; raises InputError, naming the option, for anything else."""
-    return _checked(option, path, read_or_refuse(option, path))
+    """A result file of `verify`, checked; raises InputError, naming the option, for anything else.
 
+    A committed file may be a study's as well, which the exhibit that shows it checks.
+    """
+    from reports.results import FORMAT, ResultFileError, check
 
-def _committed(path: Path) -> Any:
-    """A committed file: a run of `verify`, checked, or a study's, which the exhibit that shows it checks."""
-    from refimpl.errors import InputError
-    from reports.results import FORMAT
-
-    found = read_or_refuse("--committed", path)
-    if not isinstance(found, dict):
-        raise InputError("--committed", str(path), "a result file: a JSON object")
-    return _checked("--committed", path, found) if found.get("format") == FORMAT else found
-
-
-def _checked(option: str, path: Path, found: object) -> Any:
-    from refimpl.errors import InputError
-    from reports.results import ResultFileError, check
-
+    found = read_or_refuse(option, path)
+    if option == "--committed":
+        if not isinstance(found, dict):
+            raise refusal(option, str(path), "a result file: a JSON object")
+        if found.get("format") != FORMAT:
+            return found
     try:
         return check(found)
     except ResultFileError as wrong:
-        raise InputError(option, str(path), f"a result file of 'verify' ({wrong})") from wrong
+        raise refusal(option, str(path), f"a result file of 'verify' ({wrong})") from wrong
 
 
 def read_or_refuse(option: str, path: Path) -> Any:

@@ -10,14 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 from verification.cli.options import (
     Options,
-    Parsers,
     elements,
     gigabytes,
     lengths,
     on_or_off,
     option,
     output_file,
-    subcommand,
 )
 from verification.cli.output import (
     PICTURES,
@@ -25,12 +23,13 @@ from verification.cli.output import (
     check_outputs,
     check_suffix,
     emit,
-    emit_early,
     files_of,
     plain,
+    refusal,
     wrapped,
 )
 from verification.cli.solve_table import document, show_finished, table
+from verification.framework.files import is_stream
 
 if TYPE_CHECKING:
     from refimpl import Scene, Solution
@@ -71,6 +70,7 @@ PASSED_ON = ("grid", "accuracy", "quantity", "method", "approach", "tolerance")
 LIMITS = ("max_grid", "max_seconds", "max_memory")
 SWITCHES = ("coupled", "oblique", "tilted", "slope_correction", "plastic")
 
+ONE_OF = ("--grid", "--accuracy")
 OPTIONS: Options = {
     "scene": option("a scene's TOML file, or the name of a shipped scene", metavar="SCENE"),
     "--grid": option(
@@ -127,23 +127,9 @@ OPTIONS: Options = {
 }
 
 
-def add_parser(commands: Parsers) -> None:
-    """Declare the subcommand."""
-    subcommand(
-        commands,
-        "solve",
-        run,
-        OPTIONS,
-        one_of=("--grid", "--accuracy"),
-        help="solve a scene",
-        description="Solve a scene: friction, contact area, pressures, and how well it converged.",
-        epilog=EPILOG,
-    )
-
-
 def run(options: argparse.Namespace) -> int:
     """Solve and show; status 1 when the certificate does not meet the tolerance, or nothing touches."""
-    from refimpl.errors import InputError
+    import refimpl
     from refimpl.scene.scene_file import read_tolerances
 
     scene = _read_scene(options)
@@ -153,11 +139,14 @@ def run(options: argparse.Namespace) -> int:
     if options.explain:
         return _explain(scene, options, keywords)
     if options.budget and options.approach is not None:
-        raise InputError(
-            "--approach", options.approach, "none with --budget, which is about the scene's load"
-        )
+        raise refusal("--approach", options.approach, "none with --budget, which is about the scene's load")
     tolerances = read_tolerances(options.scene)
-    solution = _solved(scene, options, keywords)
+    try:
+        with StatusLine() as line:
+            solution = refimpl.solve(scene, **keywords, progress=line.show)
+    except KeyboardInterrupt as interrupt:
+        show_finished(interrupt, options.scene)
+        raise
     _write_files(solution, scene, options)
     found, text = document(solution, options.scene), table(solution, options.scene)
     if tolerances or options.budget:
@@ -206,31 +195,14 @@ def _explain(scene: Scene, options: argparse.Namespace, keywords: Mapping[str, A
     return 0
 
 
-def _solved(scene: Scene, options: argparse.Namespace, keywords: Mapping[str, Any]) -> Solution:
-    """Return the solution, with progress on a terminal; an interrupt shows the last finished grid."""
-    import refimpl
-
-    try:
-        with StatusLine() as line:
-            return refimpl.solve(scene, **keywords, progress=line.show)
-    except KeyboardInterrupt as interrupt:
-        show_finished(interrupt, options.scene)
-        raise
-
-
 def _write_files(solution: Solution, scene: Scene, options: argparse.Namespace) -> None:
-    from verification.cli import arrays, plot, vtk
+    from verification.cli import arrays, plot
 
     if options.plot is not None:
         plot.draw(solution, scene, options.plot)
-    if options.vtk is not None:
-        vtk.write(solution, options.vtk)
-    if options.npz is not None:
-        arrays.write_npz(solution, options.npz)
-    if options.netcdf is not None:
-        arrays.write_netcdf(solution, options.netcdf)
-    if options.patches is not None:
-        arrays.write_patches(solution, options.patches)
+    for name, write in arrays.WRITERS.items():
+        if (path := getattr(options, name)) is not None:
+            write(solution, path)
 
 
 def _with_budget(
@@ -242,24 +214,30 @@ def _with_budget(
     text: str,
 ) -> str:
     """Add the uncertainty budget to the document; return the text that is left to be shown."""
+    from refimpl.sensitivities.budget import budget as budget_of
     from verification.cli import budget
 
     found["budget"] = None
-    if reason := budget.hindrance(solution, options.approach):
+    reason = "" if solution.certified else "the solution's certificate does not hold"
+    if options.approach is not None:
+        reason = "it is about the scene's load, and this is at a prescribed approach"
+    if reason:
         return f"{text}\n\n{wrapped(reason, 'no uncertainty budget: ')}"
-    emit_early(found, options.json, text)  # an interrupt of the budget costs no solution
-    budgets = budget.made(scene, solution, tolerances)
+    if options.json != Path("-"):  # an interrupt of the budget costs no solution
+        replaceable = options.json is not None and not is_stream(options.json)
+        emit(found, options.json if replaceable else None, text)
+    with StatusLine() as line:
+        line.show("uncertainty budget: what every parameter changes")
+        budgets = budget_of(scene, solution, tolerances)
     found["budget"] = plain(budget.document(budgets))
     return f"\n{budget.table(budgets)}"
 
 
 def _refuse_ignored(options: argparse.Namespace) -> None:
     """Refuse an option that the others leave without a meaning, rather than ignore it."""
-    from refimpl.errors import InputError
-
     if options.quantity is not None and options.accuracy is None:
-        raise InputError("--quantity", options.quantity, "none without --accuracy, which it is about")
+        raise refusal("--quantity", options.quantity, "none without --accuracy, which it is about")
     for name in (*FILES, "budget", "strict") if options.explain else ():
         if value := getattr(options, name):
             shown = str(value) if isinstance(value, Path) else value
-            raise InputError(f"--{name}", shown, "none with --explain, which does not solve the scene")
+            raise refusal(f"--{name}", shown, "none with --explain, which does not solve the scene")

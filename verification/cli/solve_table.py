@@ -72,7 +72,7 @@ def table(solution: Solution, scene: str) -> str:
         columns(found),
         f"certificate, each residual within {solution.tolerance:g} (0 is exact):\n{columns(certificate)}",
         f"not modelled:\n{columns(not_modelled)}" if not_modelled else "",
-        *(_warned(warning) for warning in summary["warnings"]),
+        *(wrapped(w["text"], f"warning ({w['name']}): ") for w in summary["warnings"]),
     ]
     return "\n\n".join(part for part in parts if part)
 
@@ -120,7 +120,3 @@ def _change(effect: Mapping[str, float]) -> str:
     if not any(effect.values()):
         return ""
     return f"estimated change of mu {effect['friction']:.1e}, of A {effect['area']:.1e}"
-
-
-def _warned(warning: Mapping[str, object]) -> str:
-    return wrapped(str(warning["text"]), f"warning ({warning['name']}): ")

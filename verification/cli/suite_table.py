@@ -58,7 +58,10 @@ def published(path: Path = PUBLISHED) -> list[dict[str, Any]]:
 
 def text_of(suffix: str, entries: Sequence[Mapping[str, Any]]) -> str:
     """The table of these entries, the first being the run."""
-    return {".csv": _csv, ".tex": _latex, ".md": _markdown}[suffix](entries)
+    if suffix == ".csv":
+        return _csv(entries)
+    how, note = (_latex, f"% {NOTE}\n") if suffix == ".tex" else (_markdown, f"{NOTE}\n\n")
+    return f"{how(*overview(entries))}\n\n{note}{how(*verdicts(entries))}\n"
 
 
 def _csv(entries: Sequence[Mapping[str, Any]]) -> str:
@@ -104,21 +107,15 @@ def _verdict(row: Mapping[str, Any] | None) -> str:
     return f"{row['status']} {error / tolerance:.2g}"
 
 
-def _markdown(entries: Sequence[Mapping[str, Any]]) -> str:
-    def table(head: Sequence[str], rows: Rows) -> str:
-        lines = [head, ["---"] * len(head), *rows]
-        return "\n".join(f"| {' | '.join(c.replace('|', chr(92) + '|') for c in line)} |" for line in lines)
-
-    return f"{table(*overview(entries))}\n\n{NOTE}\n\n{table(*verdicts(entries))}\n"
+def _markdown(head: Sequence[str], rows: Rows) -> str:
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join(f"| {' | '.join(c.replace('|', chr(92) + '|') for c in line)} |" for line in lines)
 
 
-def _latex(entries: Sequence[Mapping[str, Any]]) -> str:
-    def table(head: Sequence[str], rows: Rows) -> str:
-        lines = [f"{' & '.join(map(_escaped, line))} \\\\" for line in (head, *rows)]
-        body = "\n".join([lines[0], r"\hline", *lines[1:]])
-        return f"\\begin{{tabular}}{{{'l' * len(head)}}}\n{body}\n\\end{{tabular}}"
-
-    return f"{table(*overview(entries))}\n\n% {NOTE}\n{table(*verdicts(entries))}\n"
+def _latex(head: Sequence[str], rows: Rows) -> str:
+    lines = [f"{' & '.join(map(_escaped, line))} \\\\" for line in (head, *rows)]
+    body = "\n".join([lines[0], r"\hline", *lines[1:]])
+    return f"\\begin{{tabular}}{{{'l' * len(head)}}}\n{body}\n\\end{{tabular}}"
 
 
 NOTE = "Verdicts with the error as a share of the tolerance; up to 1 is a pass, - is not applicable."

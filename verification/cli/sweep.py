@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.options import Options, Parsers, option, output_file, output_text, subcommand
+from verification.cli.options import Options, option, output_file, output_text
 from verification.cli.output import (
     PICTURES,
     StatusLine,
@@ -17,6 +17,7 @@ from verification.cli.output import (
     columns,
     emit,
     plain,
+    refusal,
     wrapped,
 )
 
@@ -69,28 +70,14 @@ OPTIONS: Options = {
 }
 
 
-def add_parser(commands: Parsers) -> None:
-    """Declare the subcommand."""
-    subcommand(
-        commands,
-        "sweep",
-        run,
-        OPTIONS,
-        help="solve the runs of a study: realisations x roughness x load x direction x grid",
-        description="Solve the runs of a study in worker processes, resumably, and export the table.",
-        epilog=EPILOG,
-    )
-
-
 def run(options: argparse.Namespace) -> int:
     """Run what is missing and export; status 1 when a run failed, did not converge, or a worker was lost."""
-    from refimpl.errors import InputError
     from verification.sweep import engine, export, posable
     from verification.sweep.store import files_of
     from verification.sweep.study_file import read_study
 
     if options.workers < 1:
-        raise InputError("--workers", options.workers, "at least one worker process")
+        raise refusal("--workers", options.workers, "at least one worker process")
     if options.parquet is not None:
         export.require_parquet(options.parquet)
     store = options.store or Path(Path(options.study).stem + ".sqlite")
@@ -121,19 +108,18 @@ def run(options: argparse.Namespace) -> int:
 
 def check_plot(options: argparse.Namespace, study: Study) -> None:
     """Choose the columns of the picture; refuse, before any run, what names none or has no picture."""
-    from refimpl.errors import InputError
     from verification.sweep.run import COORDINATES, OUTCOMES
 
     check_suffix("--plot", options.plot, PICTURES)
     given = {name: getattr(options, name) for name in ("x", "y", "by") if getattr(options, name)}
     if options.plot is None:
         for name, value in given.items():
-            raise InputError(f"--{name}", value, "none without --plot")
+            raise refusal(f"--{name}", value, "none without --plot")
         return
     known = (*COORDINATES, *OUTCOMES, *study.own_axes)
     for name, value in given.items():
         if value not in known:
-            raise InputError(f"--{name}", value, f"one of {', '.join(known)}")
+            raise refusal(f"--{name}", value, f"one of {', '.join(known)}")
     several = [axis for axis, values in study.vary.items() if len(values) > 1]
     options.y = options.y or "friction_coefficient_corrected"
     numbers = [axis for axis in several if axis != options.by and not axis.endswith((".path", ".seed"))]
@@ -144,17 +130,16 @@ def check_plot(options: argparse.Namespace, study: Study) -> None:
 
 def _check_suffixes(**written: Path | None) -> None:
     """Refuse a file whose name says that it is what another option writes."""
-    from refimpl.errors import InputError
-
     for name, path in written.items():
         for other, suffix in SUFFIXES.items():
             if path is not None and other != name and path.suffix.lower() == suffix:
                 allowed = f"no name that ends in {suffix}, as that of --{other} does"
-                raise InputError(f"--{name}", str(path), allowed)
+                raise refusal(f"--{name}", str(path), allowed)
 
 
 def _export(options: argparse.Namespace, done: Sweep, store: Path) -> None:
     """Write and show what was asked for; the rows take the table's place on standard output."""
+    from verification.framework.provenance import provenance
     from verification.sweep import export
 
     table = _table(done, store)
@@ -172,22 +157,14 @@ def _export(options: argparse.Namespace, done: Sweep, store: Path) -> None:
 
         found = curves(done.rows, options.x, options.y, options.by)
         draw_sweep(found, options.x, options.y, options.by, options.plot)
-    emit(_document(done, store), options.json, table)
-
-
-def _document(done: Sweep, store: Path) -> dict[str, object]:
-    from verification.framework.provenance import provenance
-
-    return {
+    document = {
         "store": str(store),
-        "found": done.found,
-        "finished": done.finished,
-        "failures": done.failures,
-        "statuses": done.statuses,
+        **{name: getattr(done, name) for name in ("found", "finished", "failures", "statuses")},
         "seconds": round(done.seconds, 3),
         "rows": plain(done.table()),
         "provenance": provenance(),
     }
+    emit(document, options.json, table)
 
 
 def _table(done: Sweep, store: Path) -> str:

@@ -5,10 +5,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from verification.cli.options import SCENE, Options, Parsers, grids, option, subcommand
-from verification.cli.output import check_outputs, emit, files_of
+from verification.cli.options import SCENE, Options, grids, option
+from verification.cli.output import check_outputs, emit, files_of, refusal
 
-TEXT = "the cost-accuracy table of a scene: grid and seconds for an error in mu, A or p_max"
 EPILOG = "examples:\n  rough-friction tradeoff table1-rough --grids 64,128,256 --reference 1024"
 OPTIONS: Options = {
     "scene": SCENE,
@@ -17,14 +16,8 @@ OPTIONS: Options = {
 }
 
 
-def add_parser(commands: Parsers) -> None:
-    """Declare the subcommand."""
-    subcommand(commands, "tradeoff", run, OPTIONS, help=TEXT, description=f"Print {TEXT}.", epilog=EPILOG)
-
-
 def run(options: argparse.Namespace) -> int:
     """Solve all grids, the half of the reference's among them, and print the table."""
-    from refimpl.errors import InputError
     from refimpl.scene.scene_file import read_scene
     from verification.benchmarks.cost_of_accuracy import costs, solve_grids, table
     from verification.framework.case import jsonable
@@ -32,7 +25,7 @@ def run(options: argparse.Namespace) -> int:
 
     if options.reference < 2 * max(options.grids) or options.reference % 2:
         allowed = f"an even grid of at least twice the finest one, {2 * max(options.grids)}"
-        raise InputError("--reference", options.reference, allowed)
+        raise refusal("--reference", options.reference, allowed)
     scene = read_scene(options.scene)
     check_outputs([Path(options.scene), *files_of(scene)], json=options.json)
     rows = solve_grids(scene, sorted({*options.grids, options.reference // 2}), options.reference)

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from verification.cli import contestant, export
-from verification.cli.options import Options, Parsers, option, subcommand
-from verification.cli.output import columns, emit, judgement, select_or_refuse
+from verification.cli.options import Options, option
+from verification.cli.output import columns, emit, judgement, refusal, select_or_refuse
 
 if TYPE_CHECKING:
     from verification.framework.runner import Run
@@ -39,31 +39,16 @@ OPTIONS: Options = {
 }
 
 
-def add_parser(commands: Parsers) -> None:
-    """Declare the subcommand."""
-    parser = subcommand(
-        commands,
-        "verify",
-        run,
-        OPTIONS,
-        help="run the verification cases",
-        description="Run the verification cases. A case that could not run is never a pass.",
-        epilog=EPILOG,
-    )
-    contestant.add_options(parser)
-
-
 def run(options: argparse.Namespace) -> int:
     """Run or list the cases; status 1 when one failed or broke, or none passed."""
-    from refimpl.errors import InputError
     from verification.framework import registry, runner
     from verification.framework.case import Tier
 
     if options.jobs < 1:
-        raise InputError("--jobs", options.jobs, "at least one worker process")
+        raise refusal("--jobs", options.jobs, "at least one worker process")
     if options.export is not None:
         if options.solver or options.exec or options.self_test or options.list:
-            raise InputError("--export", str(options.export), "no other action beside it")
+            raise refusal("--export", str(options.export), "no other action beside it")
         return export.run(options)
     if contestant.chosen(options):
         return contestant.run(options)

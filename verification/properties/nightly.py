@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import traceback
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -30,22 +30,25 @@ def run(path: Path, examples: int, seed: int) -> bool:
     already has are not run again; a log of another ``seed`` or share of examples is started anew.
     """
     each = -(-examples // (len(SOLVERS) * len(INVARIANTS)))
-    slices = [line for line in logged(path) if (line["seed"] - line["number"], line["asked"]) == (seed, each)]
+    earlier = read_result(path)["slices"] if path.exists() else ()
+    slices = [line for line in earlier if (line["seed"] - line["number"], line["asked"]) == (seed, each)]
     known = {(line["solver"], line["invariant"]) for line in slices}
     progress = Progress(len(SOLVERS) * len(INVARIANTS) - len(known))
     for number, (solver, name) in enumerate((s, n) for s in SOLVERS for n in INVARIANTS):
         if (solver, name) not in known:
             slices.append(one_slice(number, solver, name, each, seed))
-            write_result(document(slices, seed), path)
+            log = {
+                "seed": seed,
+                "examples": sum(line["held"] for line in slices),
+                "counterexamples": sum(line["counterexample"] is not None for line in slices),
+                "processor_seconds": round(sum(line["seconds"] for line in slices), 1),
+                "slices": slices,
+                "provenance": provenance(),
+            }
+            write_result(log, path)
             progress.tick(f"{solver} {name}")
     progress.close()
     return all(line["counterexample"] is None for line in slices)
-
-
-def logged(path: Path) -> Iterator[dict[str, Any]]:
-    """Slices of an earlier run, if there was one."""
-    if path.exists():
-        yield from read_result(path)["slices"]
 
 
 def one_slice(number: int, solver: str, name: str, examples: int, seed: int) -> dict[str, Any]:
@@ -65,16 +68,4 @@ def one_slice(number: int, solver: str, name: str, examples: int, seed: int) -> 
         "held": held,
         "seconds": round(time.process_time() - begun, 2),
         "counterexample": found,
-    }
-
-
-def document(slices: list[dict[str, Any]], seed: int) -> dict[str, object]:
-    """The log: totals, every slice, and the conditions."""
-    return {
-        "seed": seed,
-        "examples": sum(line["held"] for line in slices),
-        "counterexamples": sum(line["counterexample"] is not None for line in slices),
-        "processor_seconds": round(sum(line["seconds"] for line in slices), 1),
-        "slices": slices,
-        "provenance": provenance(),
     }

@@ -49,15 +49,14 @@ def slope_along_and_across(sample: Sample, solution: rf.Solution) -> tuple[Array
     z = (solution.surface_lower + solution.surface_upper) / 2
     (n, m), (dx, dy) = sample.shape, sample.grid.spacings
     d = np.zeros((2, n, m))
-    for i in range(n):
-        for j in range(m):
-            if sample.periodic:
-                d[0, i, j] = (z[(i + 1) % n, j] - z[i - 1, j]) / (2 * dx)
-                d[1, i, j] = (z[i, (j + 1) % m] - z[i, j - 1]) / (2 * dy)
-            else:
-                i0, i1, j0, j1 = max(i - 1, 0), min(i + 1, n - 1), max(j - 1, 0), min(j + 1, m - 1)
-                d[0, i, j] = (z[i1, j] - z[i0, j]) / ((i1 - i0) * dx)
-                d[1, i, j] = (z[i, j1] - z[i, j0]) / ((j1 - j0) * dy)
+    for i, j in np.ndindex(n, m):
+        if sample.periodic:
+            d[0, i, j] = (z[(i + 1) % n, j] - z[i - 1, j]) / (2 * dx)
+            d[1, i, j] = (z[i, (j + 1) % m] - z[i, j - 1]) / (2 * dy)
+        else:
+            i0, i1, j0, j1 = max(i - 1, 0), min(i + 1, n - 1), max(j - 1, 0), min(j + 1, m - 1)
+            d[0, i, j] = (z[i1, j] - z[i0, j]) / ((i1 - i0) * dx)
+            d[1, i, j] = (z[i, j1] - z[i, j0]) / ((j1 - j0) * dy)
     cos, sin = math.cos(solution.sliding_direction), math.sin(solution.sliding_direction)
     return cos * d[0] + sin * d[1], cos * d[1] - sin * d[0]
 

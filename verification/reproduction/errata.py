@@ -103,11 +103,6 @@ def _coarse_misfit(*, printed: bool) -> float:
     return max(misfits)
 
 
-def _initial_points_misfit(last: int) -> float:
-    """Initial contact points of the finest grid against four times those of the next (the same area)."""
-    return _off(last, 4 * TABLE2[2][1])
-
-
 def _outside(roughness: Iterable[float]) -> float:
     """How far equivalent roughnesses (m) lie outside the range of section 6.1, relative to its ends."""
     lowest, highest = (math.hypot(SPHERE_RMS, flat) for flat in FLAT_RMS)
@@ -202,8 +197,8 @@ ERRATA = (
         "'23715' initial and '68951' final contact points",
         "conjecture: a digit is lost, as in 237150, four times case 3",
         "relative difference of the initial points from four times those of the grid half as fine",
-        lambda: _initial_points_misfit(TABLE2[3][1]),
-        lambda: _initial_points_misfit(10 * TABLE2[3][1]),
+        lambda: _off(TABLE2[3][1], 4 * TABLE2[2][1]),
+        lambda: _off(10 * TABLE2[3][1], 4 * TABLE2[2][1]),
         0.01,
         "case 3 departs from four times case 2 by 0.65 %",
     ),

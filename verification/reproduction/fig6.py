@@ -109,6 +109,8 @@ def effective_pressure(rms: float, realisations: int, grid: int) -> Profile:
         means.append(np.bincount(ring[inside], pressure[inside], rings) / count)
         outside.append(pressure[beyond].sum() / pressure.sum())
     pressure, theory = np.array(means), gt.solve(summits(rms))
+    edges = np.minimum(np.arange(rings + 1) * BIN / hertz().contact_radius, 1.0)
+    load_between = -SMOOTH.load * np.diff((1 - edges**2) ** 1.5)  # Hertz' load on each annulus
     factor = student.ppf((1 + CONFIDENCE) / 2, realisations - 1) / np.sqrt(realisations)
     return Profile(
         r=radius,
@@ -116,14 +118,6 @@ def effective_pressure(rms: float, realisations: int, grid: int) -> Profile:
         half_width=factor * pressure.std(axis=0, ddof=1),
         greenwood_tripp=theory.at(radius),
         textbook=gt.solve(textbook(rms)).at(radius),
-        hertz=np.array([_ring_mean(k) for k in range(rings)]),
+        hertz=load_between / (np.pi * BIN**2 * (2 * np.arange(rings) + 1)),
         outside=np.array(outside),
     )
-
-
-def _ring_mean(k: int) -> float:
-    """Mean of Hertz' pressure over an annulus: the load between its edges over its area."""
-    smooth = hertz()
-    edges = np.minimum(np.array([k, k + 1]) * BIN / smooth.contact_radius, 1.0)
-    held = (1 - edges**2) ** 1.5  # share of the load beyond an edge
-    return float(smooth.load * (held[0] - held[1]) / (np.pi * BIN**2 * (2 * k + 1)))

@@ -6,8 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from refimpl.grid import Array
-
 SIDE = 1.61e-3  # m, section 5
 LOADS = (14.0, 42.0, 70.0)  # N, section 6.1
 CORRELATION_LENGTH = 104e-6  # m, section 6.1: where the autocorrelation is 10 %
@@ -42,10 +40,6 @@ class Column(NamedTuple):
         return float(np.hypot(self.flat_rms, self.sphere_rms))
 
 
-def _column(flat: float, sphere: float, A: Array, mu: Array, f: Array) -> Column:
-    return Column(flat, sphere, *(tuple(float(f"{v:.6g}") for v in row) for row in (A, mu, f)))  # type: ignore[arg-type]  # three meshes each
-
-
 _TABLE3 = np.array(  # A / 0.1 mm^2; mu / 0.1; f_max / 0.1 GPa
     [
         [[6.54, 6.44, 6.43], [2.20, 2.19, 2.18], [1.63, 1.64, 1.64]],
@@ -55,9 +49,10 @@ _TABLE3 = np.array(  # A / 0.1 mm^2; mu / 0.1; f_max / 0.1 GPa
     ]
 )
 _ROUGHNESS = ((0.0, 0.0), (0.504e-6, 0.084e-6), (1.008e-6, 0.084e-6), (1.680e-6, 0.084e-6))
+_SI = np.array([1e-7, 0.1, 1e8])[:, None]
 TABLE3 = tuple(
-    _column(flat, sphere, A * 1e-7, mu * 0.1, f * 1e8)
-    for (flat, sphere), (A, mu, f) in zip(_ROUGHNESS, _TABLE3, strict=True)
+    Column(*rms, *(tuple(float(f"{v:.6g}") for v in row) for row in rows * _SI))  # type: ignore[arg-type]  # three meshes each
+    for rms, rows in zip(_ROUGHNESS, _TABLE3, strict=True)
 )
 
 # Table 2, "matrix inversion by FFT": grid, contact points at the start and at the end

@@ -45,16 +45,14 @@ def smooth(mesh: int) -> rf.Solution:
 
 def cells(found: Sequence[Row], quantity: str, meshes: Sequence[int] = MESHES) -> list[Cell]:
     """The table's row of one quantity: all columns, mesh after mesh."""
-    return [
-        Cell(row, mesh, getattr(row, quantity)[MESHES.index(mesh)], _ours(found, row, quantity, mesh))
-        for row, mesh in product(TABLE3, meshes)
-    ]
-
-
-def _ours(found: Sequence[Row], printed: Column, quantity: str, mesh: int) -> Estimate:
-    if printed.flat_rms == 0:
-        return Estimate(float(getattr(smooth(mesh), quantity)), 0.0, 0.0, 1)
-    return estimate(column(found, quantity, lower_rms=printed.flat_rms, grid=mesh))
+    table = []
+    for row, mesh in product(TABLE3, meshes):
+        if row.flat_rms == 0:
+            ours = Estimate(float(getattr(smooth(mesh), quantity)), 0.0, 0.0, 1)
+        else:
+            ours = estimate(column(found, quantity, lower_rms=row.flat_rms, grid=mesh))
+        table.append(Cell(row, mesh, getattr(row, quantity)[MESHES.index(mesh)], ours))
+    return table
 
 
 def series(table: Sequence[Cell]) -> dict[str, list[float]]:

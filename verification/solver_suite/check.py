@@ -152,14 +152,11 @@ class Entrant:
         The mean of a periodic pressure stores no energy: its relative error counts as squared as well. Raises
         ValueError for pressures to compare with that hold no energy, or carry no load.
         """
-        error, carried = (
-            reference_solution.misfit(pressed.problem, pressed.pressure, exact),
-            float(exact.sum()),
-        )
+        error, carried = reference_solution.misfit(pressed.problem, pressed.pressure, exact), exact.sum()
         if not carried > 0:
             raise ValueError("the pressures to compare with carry no load")
         if pressed.problem.periodic:
-            error += (float(pressed.pressure.sum()) / carried - 1) ** 2
+            error += float(pressed.pressure.sum() / carried - 1) ** 2
         return error / self.claim
 
     def against(self, *answers: tuple[Pressed, Array]) -> Measured:

@@ -30,7 +30,7 @@ import subprocess
 import tempfile
 import zipfile
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import BinaryIO
 
@@ -39,7 +39,7 @@ import numpy as np
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
 from verification.solver_suite.process import exit_text
-from verification.solver_suite.protocol import NUMBERS, Abilities, Answer, BadAnswer, ContactProblem
+from verification.solver_suite.protocol import NUMBERS, Abilities, Answer, BadAnswer, ContactProblem, Coupling
 
 LONGEST = 86400.0
 """Seconds that one problem may take: a day. The system's clocks for waiting end at some weeks."""
@@ -119,7 +119,9 @@ class Command:
             except subprocess.TimeoutExpired as late:
                 raise BadAnswer(f"no answer within {self.timeout:g} s") from late
             finally:
-                _end(process)
+                with suppress(ProcessLookupError):  # processes left of its group
+                    os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
             if status:
                 raise BadAnswer(f"{exit_text(status)}: {_last_line(output)}")
 
@@ -129,13 +131,6 @@ def _last_line(output: BinaryIO) -> str:
     output.seek(max(0, output.seek(0, os.SEEK_END) - MOST_READ))
     said = output.read(MOST_READ).decode(errors="replace").split("\n")
     return next((line.strip() for line in reversed(said) if line.strip()), "nothing said")[:200]
-
-
-def _end(process: subprocess.Popen[bytes]) -> None:
-    """Kill what is left of the program's process group."""
-    with suppress(ProcessLookupError):
-        os.killpg(process.pid, signal.SIGKILL)
-    process.wait()
 
 
 def header_of(problem: ContactProblem) -> dict[str, object]:
@@ -150,10 +145,7 @@ def header_of(problem: ContactProblem) -> dict[str, object]:
         "periodic": int(problem.periodic),
         "tolerance": problem.tolerance,
         "friction": int(coupling is not None),
-        "tau": coupling.tau if coupling else 0.0,
-        "beta": coupling.beta if coupling else 0.0,
-        "shear_compliance": coupling.shear_compliance if coupling else 0.0,
-        "sliding_direction": coupling.sliding_direction if coupling else 0.0,
+        **{field.name: getattr(coupling, field.name, 0.0) for field in fields(Coupling)},
         "shape": problem.shape,
         "lengths": problem.lengths,
         "hardness": problem.hardness or 0.0,

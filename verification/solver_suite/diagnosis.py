@@ -12,7 +12,7 @@ import math
 from collections.abc import Hashable, Iterable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,15 +41,6 @@ PARTS = ("edges", "modulus", "borders", *OF_SLIDING)
 """Parts of a problem that its operators depend on, beside its shape."""
 
 
-def row_of(slug: str) -> Row | None:
-    """Return the row of a problem of the designs by its slug; or None."""
-    return _rows(_is_further(slug)).get(slug)
-
-
-def _is_further(slug: str) -> bool:
-    return slug.removeprefix("design-").rpartition("-")[0] in FURTHER
-
-
 @cache
 def _rows(further: bool) -> Mapping[str, Row]:
     """Rows by slug in the order of the suite, those of the further designs too where asked for."""
@@ -69,10 +60,10 @@ def levels(slug: str) -> dict[str, Trait] | None:
 
     A dimension that a problem does not have, such as beta without friction, is no trait.
     """
-    row = row_of(slug)
+    further = slug.removeprefix("design-").rpartition("-")[0] in FURTHER
+    row = _rows(further).get(slug)
     if row is None:
         return None
-    further = _is_further(slug)
     n, g, E = int(row["elements"]), float(row["slope"]), float(row["modulus"])
     wide, deep = shape_of(row)
     traits: dict[str, Trait] = {
@@ -104,7 +95,19 @@ def levels(slug: str) -> dict[str, Trait] | None:
         traits["changed"] = str(row["changed"])
     for part in PARTS[: None if _slides(row) else -len(OF_SLIDING)]:
         traits[f"changed {part}"] = part in _changed_parts(further)[slug] or None
-    return traits | (_of_sliding(row) if _slides(row) else {})
+    if not _slides(row):
+        return traits
+    angle, coupling = (int(row["sector"]) + 0.5) * math.pi / 4, float(row["coupling"])
+    return traits | {
+        "sector": f"{row['sector']}",
+        "cos of the direction": "negative" if math.cos(angle) < 0 else "positive",
+        "sin of the direction": "negative" if math.sin(angle) < 0 else "positive",
+        "beta": float(row["beta"]),
+        "tau": float(row["tau"]),
+        "coupling": abs(coupling),
+        "sign of c0": "positive" if coupling > 0 else "negative",
+        "c0": abs(coupling) / (math.pi * E),
+    }
 
 
 @cache
@@ -126,7 +129,10 @@ def _changed_parts(further: bool) -> dict[str, frozenset[str]]:
     changed: dict[str, frozenset[str]] = {}
     for slug, base in _rows(further).items():
         for parts in (_parts(row, slug) for row in in_turn(base)):
-            others = {name: met.setdefault((name, *_without(name, parts)), set()) for name in PARTS}
+            others = {
+                name: met.setdefault((name, *(parts[part] for part in parts if part != name)), set())
+                for name in PARTS
+            }
             new = {name for name in PARTS if others[name] - {parts[name]}}
             changed[slug] = changed.get(slug, frozenset()) | new
             for name in PARTS:
@@ -147,27 +153,8 @@ def _parts(row: Row, slug: str) -> dict[str, Hashable]:
     }
 
 
-def _without(name: str, parts: Mapping[str, Hashable]) -> tuple[Hashable, ...]:
-    return tuple(value for part, value in parts.items() if part != name)
-
-
 def _slides(row: Row) -> bool:
     return any(each.get("beta") or each.get("tau") for each in in_turn(row))
-
-
-def _of_sliding(row: Row) -> dict[str, Trait]:
-    angle = (int(row["sector"]) + 0.5) * math.pi / 4
-    coupling: Any = row["coupling"]
-    return {
-        "sector": f"{row['sector']}",
-        "cos of the direction": "negative" if math.cos(angle) < 0 else "positive",
-        "sin of the direction": "negative" if math.sin(angle) < 0 else "positive",
-        "beta": float(row["beta"]),
-        "tau": float(row["tau"]),
-        "coupling": abs(float(coupling)),
-        "sign of c0": "positive" if coupling > 0 else "negative",
-        "c0": abs(float(coupling)) / (math.pi * float(row["modulus"])),
-    }
 
 
 LISTED = 3
@@ -230,20 +217,13 @@ def _best(conditions: list[Condition], score: NDArray[np.float64], most: int) ->
     for i, j in zip(rows[order], columns[order], strict=True):
         one, other = conditions[i], conditions[j]
         names = frozenset((one.name, other.name))
-        if any(names >= known for known in listed) or (i != j and _says_no_more(one, other)):
+        follows = not (one.met & ~other.met).any() or not (other.met & ~one.met).any()
+        if any(names >= known for known in listed) or (i != j and (len(names) == 1 or follows)):
             continue
         listed[names] = str(one) if i == j else f"{one} and {other}"
         if len(listed) == most:
             break
     return list(listed.values())
-
-
-def _says_no_more(one: Condition, other: Condition) -> bool:
-    """Whether a pair is on one dimension, or one of its conditions follows from the other."""
-    if one.name == other.name:
-        return True
-    both = one.met & other.met
-    return bool(np.array_equal(both, one.met) or np.array_equal(both, other.met))
 
 
 def _conditions(traits: list[dict[str, Trait]]) -> tuple[list[Condition], dict[str, NDArray[np.bool_]]]:

@@ -57,9 +57,7 @@ def approach(problem: ContactProblem, f: Array) -> Number | None:
     contact = f > 0
     right = problem.approach
     if right is None:
-        between = (
-            contact if problem.hardness is None else contact & (f < reference_solution.at_hardness(problem))
-        )
+        between = contact & (f < reference_solution.at_hardness(problem))
         if not between.any():
             return None
         v = reference_solution.displacement(problem, f) + problem.gap

@@ -181,8 +181,8 @@ def _answer(judge: socket.socket, source: Source) -> None:
         contestant = source()
         ready = {"kind": "ready", "abilities": asdict(abilities_of(contestant))}
     except InputError as refused:
-        send(judge, {"kind": "refused", "field": refused.field, "allowed": refused.allowed,
-                          "value": _text(refused.value)})  # fmt: skip
+        value = readable(refused.value if isinstance(refused.value, str) else repr(refused.value))
+        send(judge, {"kind": "refused", "field": refused.field, "allowed": refused.allowed, "value": value})
         return
     send(judge, ready)
     while True:
@@ -203,16 +203,10 @@ def _posed(contestant: Contestant, problem: Any) -> tuple[dict[str, Any], bytes]
     except (Exception, SystemExit) as failure:  # a solver may do anything
         frames = traceback.extract_tb(failure.__traceback__)
         place = f"{os.path.basename(frames[-1].filename)}:{frames[-1].lineno}" if frames else "no traceback"
-        return {
-            "kind": "failed",
-            "note": f"{type(failure).__name__}: {readable(str(failure))} [{place}]",
-        }, b""
+        note = f"{type(failure).__name__}: {readable(str(failure))} [{place}]"
+        return {"kind": "failed", "note": note}, b""
     numbers = {name: getattr(answer, name) for name in NUMBERS}
     return {"kind": "answer", **numbers}, np.ascontiguousarray(answer.pressure, dtype="<f8").tobytes()
-
-
-def _text(value: object) -> str:
-    return readable(value if isinstance(value, str) else repr(value))
 
 
 def _alive(process: psutil.Process) -> bool:

@@ -261,18 +261,19 @@ class Abilities:
         >>> Abilities(periodic=False).lacking(problem)
         'periodic'
         """
-        if not (self.periodic if problem.periodic else self.aperiodic):
-            return "periodic" if problem.periodic else "aperiodic"
-        if not (self.load if problem.load is not None else self.approach):
-            return "load" if problem.load is not None else "approach"
-        if problem.coupling is not None and not self.coupling:
-            return "coupling"
-        if problem.shape[0] != problem.shape[1] and not self.rectangle:
-            return "rectangle"
-        if problem.spacings[0] != problem.spacings[1] and not self.oblong_elements:
-            return "oblong elements"
-        if problem.hardness is not None and not self.hardness:
-            return "hardness"
+        required = {
+            "periodic": problem.periodic,
+            "aperiodic": not problem.periodic,
+            "load": problem.load is not None,
+            "approach": problem.approach is not None,
+            "coupling": problem.coupling is not None,
+            "rectangle": problem.shape[0] != problem.shape[1],
+            "oblong_elements": problem.spacings[0] != problem.spacings[1],
+            "hardness": problem.hardness is not None,
+        }
+        for name, is_required in required.items():
+            if is_required and not getattr(self, name):
+                return name.replace("_", " ")
         if self.largest is not None and self.largest < problem.M:
             return f"{problem.M} elements along one axis"
         return None
@@ -300,15 +301,6 @@ HIGHEST = 1e50
 EXPECTED = "expected an array of real numbers, or Answer(pressure, converged) with one"
 
 
-def _named(answer: object) -> str:
-    """What kind of thing an answer is."""
-    if answer is None:
-        return "None"
-    if isinstance(answer, np.ndarray):
-        return f"an array of {answer.dtype}"
-    return f"a {type(answer).__name__}"
-
-
 def ask(contestant: Contestant, problem: ContactProblem) -> Answer:
     """Return the claimed answer of a solver under test, checked; its pressures ``(M, M)`` (Pa) are an array.
 
@@ -327,7 +319,9 @@ def ask(contestant: Contestant, problem: ContactProblem) -> Answer:
             raise BadAnswer("the solver did not converge by its own report")
         answer = np.asanyarray(answer.pressure)  # a mask stays
     if not isinstance(answer, np.ndarray) or answer.dtype.kind not in "fiu":
-        raise BadAnswer(f"the solver returned {_named(answer)}: {EXPECTED}")
+        kind = "None" if answer is None else f"a {type(answer).__name__}"
+        kind = f"an array of {answer.dtype}" if isinstance(answer, np.ndarray) else kind
+        raise BadAnswer(f"the solver returned {kind}: {EXPECTED}")
     if answer.shape != problem.gap.shape:
         raise BadAnswer(f"pressures of shape {answer.shape} for a gap of shape {problem.gap.shape}")
     if np.ma.is_masked(answer):  # values below a mask are no answer

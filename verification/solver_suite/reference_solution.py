@@ -7,7 +7,6 @@ A periodic problem uses the exact symbols of `verification.exact.fourier`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -213,47 +212,39 @@ def approach_of(problem: ContactProblem, pressure: Array) -> float:
     return touch - (float(problem.gap.mean()) if problem.periodic else 0.0)
 
 
-@dataclass
-class _Elimination:
-    """Pressures and approach on a given contact set, by Gauss' elimination; frictionless or with beta."""
-
-    problem: ContactProblem
-
-    def __post_init__(self) -> None:
-        problem, (n, m) = self.problem, self.problem.shape
-        if problem.coupling is not None and problem.coupling.tau != 0:
-            raise ValueError("elimination is for problems without tau")
+def _flexibility(problem: ContactProblem) -> Array:
+    """Displacements (m/Pa) of all elements by all, frictionless or with beta. Raises ValueError for tau."""
+    c, (n, m) = problem.coupling, problem.shape
+    if c is not None and c.tau != 0:
+        raise ValueError("elimination is for problems without tau")
+    if problem.periodic:
         origin = np.zeros((n, m))
         origin[0, 0] = 1.0
-        if problem.periodic:
-            i, j = (axis.ravel() for axis in np.indices((n, m)))
-            response = displacement(problem, origin)
-            self.matrix = response[(i[:, None] - i) % n, (j[:, None] - j) % m]
-        else:
-            c = problem.coupling
-            self.matrix = _matrix(problem, None) / (np.pi * problem.reduced_modulus)
-            if c is not None:
-                shear = _matrix(problem, c.sliding_direction)
-                self.matrix = self.matrix + c.beta * c.shear_compliance * shear
-        self.gap = problem.gap.ravel()
+        i, j = (axis.ravel() for axis in np.indices((n, m)))
+        response = displacement(problem, origin)
+        return np.asarray(response[(i[:, None] - i) % n, (j[:, None] - j) % m])
+    normal = _matrix(problem, None) / (np.pi * problem.reduced_modulus)
+    if c is None:
+        return normal
+    return normal + c.beta * c.shear_compliance * _matrix(problem, c.sliding_direction)
 
-    def on(self, contact: Mask) -> tuple[Array, float]:
-        """Pressures (all elements) and approach from first contact."""
-        k = np.flatnonzero(contact)
-        block, approach = self.matrix[np.ix_(k, k)], self.problem.approach_from_touch
-        f = np.zeros(len(self.gap))
-        if approach is not None:
-            f[k] = np.linalg.solve(block, approach - self.gap[k])
-            return f, approach
-        # unknowns are scaled to one: pressures by the mean one, the approach by what that displaces
-        assert self.problem.load is not None
-        mean = self.problem.load / self.problem.element_area / len(k)
-        length = float(np.abs(block).max()) * mean
-        one = np.ones((len(k), 1))
-        bordered = np.block([[block * (mean / length), -one], [one.T, np.zeros((1, 1))]])
-        solved = np.linalg.solve(bordered, np.append(-self.gap[k] / length, len(k)))
-        f[k] = solved[:-1] * mean
-        return f, float(solved[-1]) * length
+
+def _on(problem: ContactProblem, matrix: Array, contact: Mask) -> tuple[Array, float]:
+    """Pressures (all elements) and approach from first contact on a contact set, by Gauss' elimination."""
+    k, gap = np.flatnonzero(contact), problem.gap.ravel()
+    block, approach, f = matrix[np.ix_(k, k)], problem.approach_from_touch, np.zeros(gap.size)
+    if approach is not None:
+        f[k] = np.linalg.solve(block, approach - gap[k])
+        return f, approach
+    # unknowns are scaled to one: pressures by the mean one, the approach by what that displaces
+    assert problem.load is not None
+    mean = problem.load / problem.element_area / len(k)
+    length = float(np.abs(block).max()) * mean
+    one = np.ones((len(k), 1))
+    bordered = np.block([[block * (mean / length), -one], [one.T, np.zeros((1, 1))]])
+    solved = np.linalg.solve(bordered, np.append(-gap[k] / length, len(k)))
+    f[k] = solved[:-1] * mean
+    return f, float(solved[-1]) * length
 
 
 def eliminated(problem: ContactProblem, limit: int = 100) -> Array:
@@ -263,11 +254,11 @@ def eliminated(problem: ContactProblem, limit: int = 100) -> Array:
     and adds those that penetrate until there are none. Raises RuntimeError where that does not end within
     ``limit`` rounds.
     """
-    system, prescribed = _Elimination(problem), problem.approach_from_touch
-    contact = problem.gap.ravel() < (np.inf if prescribed is None else prescribed)
+    matrix, gap, prescribed = _flexibility(problem), problem.gap.ravel(), problem.approach_from_touch
+    contact = gap < (np.inf if prescribed is None else prescribed)
     for _ in range(limit):
-        f, approach = system.on(contact)
-        v = system.matrix @ f + system.gap
+        f, approach = _on(problem, matrix, contact)
+        v = matrix @ f + gap
         slack = 1e-13 * max(float(np.abs(v).max()), abs(approach))
         wrong_in, wrong_out = contact & (f < 0), ~contact & (v < approach - slack)
         if not wrong_in.any() and not wrong_out.any():

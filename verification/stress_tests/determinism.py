@@ -11,7 +11,6 @@ from dataclasses import replace
 import numpy as np
 
 import refimpl as rf
-from refimpl.grid import Array
 from refimpl.planning.plan import Method
 
 GRIDS: dict[Method, int] = {"fft": 384, "dense": 24}
@@ -52,13 +51,9 @@ def difference(one: dict[str, str], other: dict[str, str]) -> float:
     """Largest relative difference of the pressures (to the peak) and of the numbers; 0 for equal bits."""
     if one == other:
         return 0.0
-    first, second = (_pressures(answer["pressure"]) for answer in (one, other))
+    first, second = (np.frombuffer(bytes.fromhex(answer["pressure"])) for answer in (one, other))
     apart = [float(np.abs(first - second).max() / first.max())]
     for name in NUMBERS:
         a, b = float.fromhex(one[name]), float.fromhex(other[name])
         apart.append(abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0)
     return max(apart)
-
-
-def _pressures(text: str) -> Array:
-    return np.frombuffer(bytes.fromhex(text))

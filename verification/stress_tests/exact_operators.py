@@ -7,6 +7,7 @@ periodic ones the sum of the Fourier modes; slopes are central differences, one-
 from __future__ import annotations
 
 from functools import cache
+from itertools import product
 from typing import Any
 
 import mpmath as mp
@@ -53,13 +54,11 @@ def _from_modes(M: int, what: str) -> Exact:
     """Sum over modes of ``2 pi/q`` (normal) or ``2 pi q_s/q^2 sin`` (x, y), without mean and odd Nyquist."""
     with mp.workdps(DIGITS + 10):
         turn = [(mp.cospi(mp.mpf(2 * k) / M), mp.sinpi(mp.mpf(2 * k) / M)) for k in range(M)]
-        modes = range(-(M // 2), (M + 1) // 2)
-        table = {}
-        for i in range(M):
-            for j in range(M):
-                table[i, j] = mp.fsum(
-                    _mode(p, r, turn[(p * i + r * j) % M], M, what) for p in modes for r in modes if p or r
-                ) / mp.mpf(M * M)
+        modes = [(p, r) for p, r in product(range(-(M // 2), (M + 1) // 2), repeat=2) if p or r]
+        table = {
+            (i, j): mp.fsum(_mode(p, r, turn[(p * i + r * j) % M], M, what) for p, r in modes) / mp.mpf(M * M)
+            for i, j in np.ndindex(M, M)
+        }
     return _pairs(M, lambda i, j: table[int(i) % M, int(j) % M])
 
 

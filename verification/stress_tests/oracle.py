@@ -68,21 +68,23 @@ class Oracle:
         self.approach = None
         if approach is not None:
             self.approach = mp.mpf(approach) + (sum(self.h) / len(self.h) if scene.periodic else 0)
-        self.a = [_normal_compliance(body.material) for body in (scene.lower, scene.upper)]
-        self.c = [_shear_compliance(body.material) for body in (scene.lower, scene.upper)]
+        bodies = [(mp.mpf(body.material.E), mp.mpf(body.material.nu)) for body in (scene.lower, scene.upper)]
+        self.a = [(1 - nu**2) / (mp.pi * E) for E, nu in bodies]
+        self.c = [(1 + nu) * (1 - 2 * nu) / (2 * mp.pi * E) for E, nu in bodies]
         self.A = operators.normal(M, scene.periodic) * self.spacing
         x, y = (matrix * self.spacing for matrix in operators.tangential(M, scene.periodic))
         cos, sin = mp.cos(mp.mpf(scene.sliding_direction)), mp.sin(mp.mpf(scene.sliding_direction))
         self.S, self.T = x * cos + y * sin, y * cos - x * sin
         self.D = [operators.difference(M, axis, scene.periodic) / self.spacing for axis in (0, 1)]
         self.cos, self.sin = cos, sin
+        self.flat = (np.full(M**2, mp.mpf(0), dtype=object),) * 2
 
     def solve(self, pressure: Array, support: NDArray[np.bool_]) -> Exactly:
         """The exact state that belongs to a returned pressure and to tau's active set, both ``(M, M)``."""
         with mp.workdps(DIGITS):
             chi = np.array([mp.mpf(int(s)) for s in support.ravel()], dtype=object)
             f, contact = _exact(pressure), pressure.ravel() > 0
-            tan = self._slopes(f, self._traction(f, chi), self._flat())
+            tan = self._slopes(f, self._traction(f, chi), self.flat)
             for _ in range(SLOPE_UPDATES):
                 last = f
                 f, delta, contact, margin = self._frozen(tan, chi, contact)
@@ -98,17 +100,13 @@ class Oracle:
             friction = sum((f * sin_x + r * cos_x) * cos_y) * dA
         return Exactly(f, delta, normal, friction, contact, margin)
 
-    def _flat(self) -> tuple[Exact, Exact]:
-        zero = np.full(self.M**2, mp.mpf(0), dtype=object)
-        return zero, zero
-
     def _traction(self, f: Exact, chi: Exact) -> Exact:
         return chi * mp.mpf(self.scene.friction.tau) + f * mp.mpf(self.scene.friction.beta)
 
     def _slopes(self, f: Exact, r: Exact, tan: tuple[Exact, Exact]) -> tuple[Exact, Exact]:
         """Tangents of the mean of both deformed surfaces, along and across sliding."""
         if not self.oblique:
-            return self._flat()
+            return self.flat
         down, along, across = f, r, None
         if self.correction:
             down, along, across = f - r * tan[0], r + f * tan[0], f * tan[1]
@@ -159,13 +157,13 @@ class Oracle:
                 f[index] = eliminated(G[np.ix_(index, index)], (right + K * self.approach)[index])
             return f, self.approach
         n = len(index)
-        bordered = np.full((n + 1, n + 1), mp.mpf(0), dtype=object)
-        bordered[:n, :n], bordered[:n, n], bordered[n, :n] = (
-            G[np.ix_(index, index)] / _size(G), -K[index], weights[index] / _size(weights)
-        )  # fmt: skip
-        found = eliminated(bordered, np.append(right[index], target * _size(G) / _size(weights)))
         # pressures come in units of 1/|G|: the border and the block then have one size
-        f[index] = found[:n] / _size(G)
+        unit, scale = (np.max(np.abs(values)) or mp.mpf(1) for values in (G, weights))
+        bordered = np.full((n + 1, n + 1), mp.mpf(0), dtype=object)
+        bordered[:n, :n], bordered[:n, n] = G[np.ix_(index, index)] / unit, -K[index]
+        bordered[n, :n] = weights[index] / scale
+        found = eliminated(bordered, np.append(right[index], target * unit / scale))
+        f[index] = found[:n] / unit
         return f, found[n]
 
 
@@ -198,22 +196,9 @@ def eliminated(matrix: Exact, right: Exact) -> Exact:
     return x
 
 
-def _size(values: Exact) -> Exact:
-    return np.max(np.abs(values)) or mp.mpf(1)
-
-
 def _cos(tan: Exact) -> Exact:
     return np.array([1 / mp.sqrt(1 + t * t) for t in tan], dtype=object)
 
 
 def _exact(values: Array) -> Exact:
     return np.array([mp.mpf(float(v)) for v in values.ravel()], dtype=object)
-
-
-def _normal_compliance(material: rf.Material) -> Exact:
-    return (1 - mp.mpf(material.nu) ** 2) / (mp.pi * mp.mpf(material.E))
-
-
-def _shear_compliance(material: rf.Material) -> Exact:
-    nu = mp.mpf(material.nu)
-    return (1 + nu) * (1 - 2 * nu) / (2 * mp.pi * mp.mpf(material.E))

@@ -47,12 +47,12 @@ def run_state(unique: str, extreme: Extreme) -> Row:
     started = time.process_time()
     with processor_time(extreme.seconds):
         found = extreme.run()
-    head = {
+    return {
         "id": unique, "axis": unique.split("/")[0],
         "series": extreme.series, "at": extreme.at, "x": extreme.x,
+        **asdict(found), "verdict": found.verdict.value, "digits": found.digits,
+        "seconds": round(time.process_time() - started, 3),
     }  # fmt: skip
-    body = asdict(found) | {"verdict": found.verdict.value, "digits": found.digits}
-    return head | body | {"seconds": round(time.process_time() - started, 3)}
 
 
 def run(names: Iterable[str] = (), tick: Callable[[str], None] = lambda _: None) -> list[Row]:

@@ -72,14 +72,7 @@ def _check_column(option: str, name: str | None, rows: Sequence[Row]) -> None:
 
 def _point(x: float, group: Sequence[Row], y: str) -> Point:
     values = [float(row[y]) for row in group]
-    bars = [_error(row, y) for row in group]
+    bars = [row.get(f"{y}_error", 0.0) for row in group]
     scatter = stdev(values) if len(values) > 1 else 0.0
-    return Point(x, fmean(values), scatter, fmean(bars), len(values))
-
-
-def _error(row: Row, y: str) -> float:
-    """A number's error bar; SQLite and JSON keep no NaN, and None is unbounded."""
-    name = f"{y}_error"
-    if name not in row:
-        return 0.0
-    return math.inf if row[name] is None else float(row[name])
+    error = fmean(math.inf if bar is None else bar for bar in bars)  # a store keeps no infinity
+    return Point(x, fmean(values), scatter, error, len(values))

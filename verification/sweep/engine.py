@@ -131,8 +131,9 @@ def sweep(
                 else:
                     failures[run.key] = f"{type(failure).__name__}: {failure}"
                 meter.count(run, failed=failure is not None)
-        rows, spent = list(kept.rows(runs)), list(kept.seconds(runs))
+        finished = list(kept.finished(runs))
     found = len(runs) - len(missing)
+    rows, spent = [row for row, _ in finished], [took for _, took in finished]
     return Sweep(found, len(missing) - len(failures), failures, rows, spent, time.perf_counter() - started)
 
 
@@ -224,22 +225,23 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int, Callable[[], None]]]
     except ModuleNotFoundError as missing:
         allowed = "dask.distributed installed: pip install '.[cluster]' in a checkout"
         raise InputError("--scheduler", address, allowed) from missing
-    with _no_log():
+    with ExitStack() as stack:
+        # libraries are silent about connections that break: `WorkersLost` is one line about them
+        stack.callback(logging.disable, logging.root.manager.disable)
+        logging.disable(logging.CRITICAL)
         try:
             client = connect(address, timeout=CONNECT_SECONDS)
         except (OSError, ValueError) as unreachable:
             allowed = f"a scheduler's address ({unreachable})"
             raise InputError("--scheduler", address, allowed) from unreachable
+        stack.callback(client.close, timeout=CONNECT_SECONDS)
         cluster = _Cluster(client)
-        try:
-            threads = cluster.threads()
-            if not threads or set(threads.values()) != {1}:
-                found = f"{address} with workers of {sorted(threads.values())} threads"
-                allowed = "workers of one thread each (dask worker --nthreads 1)"
-                raise InputError("--scheduler", found, allowed)
-            yield client.get_executor(pure=False), len(threads), cluster.check_alive
-        finally:
-            client.close(timeout=CONNECT_SECONDS)
+        threads = cluster.threads()
+        if not threads or set(threads.values()) != {1}:
+            found = f"{address} with workers of {sorted(threads.values())} threads"
+            allowed = "workers of one thread each (dask worker --nthreads 1)"
+            raise InputError("--scheduler", found, allowed)
+        yield client.get_executor(pure=False), len(threads), cluster.check_alive
 
 
 class _Cluster:
@@ -265,17 +267,6 @@ class _Cluster:
             self._worked = time.monotonic()
         elif time.monotonic() - self._worked > PATIENCE_SECONDS:
             raise WorkersLost("the last worker of the cluster was lost")
-
-
-@contextmanager
-def _no_log() -> Iterator[None]:
-    """No messages of libraries about connections that break: `WorkersLost` is one line about them."""
-    before = logging.root.manager.disable
-    logging.disable(logging.CRITICAL)
-    try:
-        yield
-    finally:
-        logging.disable(before)
 
 
 class _Meter:

@@ -10,44 +10,21 @@ from pathlib import Path
 from typing import Any
 
 from refimpl.errors import InputError
+from refimpl.scene.key_texts import FRICTION, MATERIAL, SCENE, SURFACES
+from refimpl.solution.record import UNITS as OF_NUMBERS
 from verification.framework.files import replacing, write_text
 from verification.sweep.run import Row
 from verification.sweep.store import COLUMNS
 
 UNITS = {
-    "load": "N",
-    "upper_rms": "m",
-    "lower_rms": "m",
-    "correlation_length": "m",
-    "sliding_direction": "rad",
-    "sliding_offset": "m",
-    "tau": "Pa",
-    "contact_area": "m^2",
-    "contact_area_corrected": "m^2",
-    "plastic_area": "m^2",
-    "max_pressure": "Pa",
-    "mean_pressure": "Pa",
-    "approach": "m",
-    "mean_gap": "m",
-    "normal_force": "N",
-    "friction_force": "N",
-    "friction_force_corrected": "N",
+    **{name: unit for name, (unit, _) in (SCENE | FRICTION).items()},
+    **{name: "" if unit == "1" else unit for name, unit in OF_NUMBERS.items()},
+    **dict.fromkeys(("upper_rms", "lower_rms", "correlation_length"), "m"),
     "elastic_friction": "N",
-    "binormal_force": "N",
     "seconds": "s",
 }
 """Units of the columns; those of an error or a cycle are its number's, all others have none."""
-KEY_UNITS = {
-    "E": "Pa",
-    "hardness": "Pa",
-    "radius": "m",
-    "rms": "m",
-    "correlation_length": "m",
-    "roll_off": "m",
-    "long_cut": "m",
-    "short_cut": "m",
-    "lay": "rad",
-}
+KEY_UNITS = {name: unit for texts in (MATERIAL, *SURFACES.values()) for name, (unit, _) in texts.items()}
 """Units of numbers varied by their full names, by the last part of the name."""
 EXPORTED = (*COLUMNS, "seconds")
 

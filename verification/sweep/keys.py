@@ -27,25 +27,24 @@ from verification.sweep.study import AXES
 from verification.sweep.study_file import KEYS, SOLVE_KEYS, study_from_dict, varied_names
 
 _BASE: Table = {"scene": "table1-rough", "vary": {"grid": [8]}, "solve": {}}
-_KINDS = {
-    "scene": "text",
-    "realisations": "whole number",
-    "first_seed": "whole number",
-    "normalise": "true or false",
-    "vary": "table",
-    "solve": "table",
-}
 _TEXTS: Mapping[str, tuple[str, str]] = {
-    "scene": ("", "the base scene: a shipped one, or a file relative to the study's; the key is required"),
-    "realisations": ("", "number of realisations of random roughness at every point of the study"),
+    "scene": (
+        "text",
+        "the base scene: a shipped one, or a file relative to the study's; the key is required",
+    ),
+    "realisations": (
+        "whole number",
+        "number of realisations of random roughness at every point of the study",
+    ),
     "first_seed": (
-        "",
+        "whole number",
         "realisation k, from 0, has the seeds `first_seed + 2 k` (upper) and `first_seed + 2 k + 1` (lower)",
     ),
-    "normalise": ("", "that of Gaussian parts; not set: as the scene says"),
-    "vary": ("", "what varies: every combination of the values is a point of the study"),
-    "solve": ("", "settings of the solver"),
+    "normalise": ("true or false", "that of Gaussian parts; not set: as the scene says"),
+    "vary": ("table", "what varies: every combination of the values is a point of the study"),
+    "solve": ("table", "settings of the solver"),
 }
+"""Type and meaning of each key."""
 _AXES: Mapping[str, tuple[str, str]] = {
     "grid": ("", "elements along the longer side; needed unless `[solve]` has an accuracy"),
     "upper_rms": ("m", "rms height of the upper body's roughness; 0 removes that roughness"),
@@ -54,22 +53,24 @@ _AXES: Mapping[str, tuple[str, str]] = {
     **{name: SCENE[name] for name in ("load", "sliding_direction", "sliding_offset")},
     **FRICTION,
 }
-_SETTINGS: Mapping[str, tuple[str, str]] = {
-    "method": ("", "production solver, plain reference for small grids, or the paper's scheme"),
-    "oblique": ("", "slope terms; not set: the scene decides"),
-    "slope_correction": ("", "exact tractions of oblique facets in Eq. (7)"),
-    "tolerance": ("", "tolerance of the certificate; not set: 1e-8, of the paper's scheme 1e-4"),
-    "accuracy": ("", "refine every run until the error bar is this share of `quantity`, in place of a grid"),
-    "quantity": (
-        "",
-        "number that the accuracy is about; not set: `friction_coefficient_corrected`, "
-        "without friction `contact_area`",
-    ),
+_SETTINGS: Mapping[str, str] = {
+    "method": "production solver, plain reference for small grids, or the paper's scheme",
+    "oblique": "slope terms; not set: the scene decides",
+    "slope_correction": "exact tractions of oblique facets in Eq. (7)",
+    "tolerance": "tolerance of the certificate; not set: 1e-8, of the paper's scheme 1e-4",
+    "accuracy": "refine every run until the error bar is this share of `quantity`, in place of a grid",
+    "quantity": "number that the accuracy is about; not set: `friction_coefficient_corrected`, "
+    "without friction `contact_area`",
 }
 
 
 def study_keys() -> dict[str, tuple[Key, ...]]:
     """Return the keys of the tables of a study's file: study, vary, solve."""
+    for table, texts, names in (
+        ("study", set(_TEXTS), KEYS), ("vary", set(_AXES), AXES), ("solve", set(_SETTINGS), SOLVE_KEYS),
+    ):  # fmt: skip
+        if texts != set(names):
+            raise LookupError(f"{table}: no text, or no key, for {sorted(texts ^ set(names))}")
     return {"study": _study(), "vary": _vary(), "solve": _solve()}
 
 
@@ -95,22 +96,14 @@ def _study() -> tuple[Key, ...]:
     made = study_from_dict({"scene": _BASE["scene"], "vary": _BASE["vary"]})
     defaults = {name: as_toml(getattr(made, name)) for name in ("realisations", "first_seed", "normalise")}
     defaults |= {"scene": REQUIRED, "vary": "-", "solve": "-"}
-    _complete("study", _TEXTS, KEYS)
+    allowed = {name: allowed_by(study_from_dict, _BASE, name, 0 if name == "scene" else "?") for name in KEYS}
     return tuple(
-        Key(
-            name,
-            _KINDS[name],
-            unit,
-            defaults[name],
-            allowed_by(study_from_dict, _BASE, name, 0 if name == "scene" else "?"),
-            meaning,
-        )
-        for name, (unit, meaning) in _TEXTS.items()
+        Key(name, kind, "", defaults[name], allowed[name], meaning)
+        for name, (kind, meaning) in _TEXTS.items()
     )
 
 
 def _vary() -> tuple[Key, ...]:
-    _complete("vary", _AXES, AXES)
     return tuple(
         Key(name, "number or list of numbers", unit, "-", _refusal("vary", name), meaning)
         for name, (unit, meaning) in _AXES.items()
@@ -118,12 +111,11 @@ def _vary() -> tuple[Key, ...]:
 
 
 def _solve() -> tuple[Key, ...]:
-    _complete("solve", _SETTINGS, SOLVE_KEYS)
     found = {f.name: f for made in (Terms, Options) for f in fields(made)}
     hints: dict[str, object] = get_type_hints(Options) | get_type_hints(Terms)
     return tuple(
-        Key(name, type_in_words(hints[name]), unit, default_of(found[name]), _refusal("solve", name), meaning)
-        for name, (unit, meaning) in _SETTINGS.items()
+        Key(name, type_in_words(hints[name]), "", default_of(found[name]), _refusal("solve", name), meaning)
+        for name, meaning in _SETTINGS.items()
     )
 
 
@@ -137,9 +129,3 @@ def _refusal(table: str, key: str) -> str:
         return study_from_dict(_BASE | changed)
 
     return allowed_by(read, {}, key)
-
-
-def _complete(table: str, texts: Mapping[str, object], names: tuple[str, ...]) -> None:
-    """Refuse, by a LookupError, texts that are not of exactly these keys."""
-    if set(texts) != set(names):
-        raise LookupError(f"{table}: no text, or no key, for {sorted(set(texts) ^ set(names))}")

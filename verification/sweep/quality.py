@@ -32,11 +32,6 @@ class Quality:
     points: int = 0
     biased: int = 0
 
-    @property
-    def is_biased(self) -> bool:
-        """True if the error bar exceeds the scatter at half of the points: more realisations do not help."""
-        return self.points > 0 and 2 * self.biased >= self.points
-
 
 def points_of(rows: Sequence[Row]) -> dict[tuple[object, ...], list[Row]]:
     """Return the converged rows by point: those that differ in their realisation only."""

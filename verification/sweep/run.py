@@ -51,6 +51,14 @@ where unbounded); ``plasticity_index`` Eq. (12)'s, of the sampled slopes, None w
 "; ".
 """
 
+OF_SOLUTION = (
+    "friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure", "approach",
+    "normal_force", "friction_force", "binormal_force", "friction_coefficient_corrected",
+    "friction_force_corrected", "plastic_area", "plastic_share", "contact_area_share", "mean_pressure",
+    "mean_gap",
+)  # fmt: skip
+"""Outcomes that are attributes of `refimpl.Solution`."""
+
 LIBRARIES = ("numpy", "scipy", "ducc0")
 """Packages whose version may change the last digits of a run."""
 
@@ -130,47 +138,26 @@ def execute(inputs: Mapping[str, Any]) -> tuple[Row, float]:
 
 def outcome(solution: rf.Solution, scene: rf.Scene) -> Row:
     """The row of a solution of a scene."""
-    slopes, contact = solution.slopes, solution.contact
+    slopes, contact, pair = solution.slopes, solution.contact, solution.problem.pair
     elastic = float(np.sum(solution.pressure * slopes.sin_x * slopes.cos_y)) * solution.grid.element_area
-    spread = solution.uncertainty
-
-    def cycle(name: str) -> float:
-        return float(spread.get(name, {}).get("active set", 0.0))
-
+    index = None
+    if pair.softer_hardness is not None:
+        index = pair.reduced_modulus / pair.softer_hardness * roughness_slope(scene, solution.grid)
     return {
         "status": solution.status.value,
-        "friction_coefficient": solution.friction_coefficient,
-        "contact_area": solution.contact_area,
-        "contact_area_corrected": solution.contact_area_corrected,
-        "max_pressure": solution.max_pressure,
-        "approach": solution.approach,
-        "normal_force": solution.normal_force,
-        "friction_force": solution.friction_force,
-        "elastic_friction": elastic,
-        "binormal_force": solution.binormal_force,
-        "residual": solution.certificate.largest,
-        "friction_coefficient_corrected": solution.friction_coefficient_corrected,
-        "friction_force_corrected": solution.friction_force_corrected,
-        "friction_coefficient_cycle": cycle("friction_coefficient"),
-        "contact_area_cycle": cycle("contact_area"),
-        "border_elements": int(contact.sum() - contact[1:-1, 1:-1].sum()),
+        **{name: getattr(solution, name) for name in OF_SOLUTION},
         **{f"{name}_error": solution.error(name) for name in REPORTED},
-        "plastic_area": solution.plastic_area,
-        "plastic_share": solution.plastic_share,
-        "plasticity_index": _plasticity_index(solution, scene),
-        "contact_area_share": solution.contact_area_share,
-        "mean_pressure": solution.mean_pressure,
-        "mean_gap": solution.mean_gap,
+        **{
+            f"{name}_cycle": float(solution.uncertainty.get(name, {}).get("active set", 0.0))
+            for name in ("friction_coefficient", "contact_area")
+        },
+        "elastic_friction": elastic,
+        "residual": solution.certificate.largest,
+        "border_elements": int(contact.sum() - contact[1:-1, 1:-1].sum()),
+        "plasticity_index": index,
         "elements_x": solution.grid.shape[0],
         "elements_y": solution.grid.shape[1],
         "warnings": "; ".join(
             dict.fromkeys(text.limit.value for text in solution.warnings if isinstance(text, ModelWarning))
         ),
     }
-
-
-def _plasticity_index(solution: rf.Solution, scene: rf.Scene) -> float | None:
-    pair = solution.problem.pair
-    if pair.softer_hardness is None:
-        return None
-    return pair.reduced_modulus / pair.softer_hardness * roughness_slope(scene, solution.grid)

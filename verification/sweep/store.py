@@ -61,20 +61,20 @@ class Store:
     def add(self, run: Run, row: Row, seconds: float) -> None:
         """Keep a finished run; raises sqlite3.IntegrityError for one that is there already."""
         values = [run.key, *run.coordinates.values(), *(row[name] for name in OUTCOMES)]
-        values = [None if _is_nan(value) else value for value in (*values, run.canonical, seconds)]
+        every = (*values, run.canonical, seconds)  # SQLite keeps NaN as NULL
+        values = [None if isinstance(value, float) and math.isnan(value) else value for value in every]
         with _refused(self._path):
             self.check_place()
             self._connection.execute(_INSERT, [*values, checksum(values)])
 
-    def rows(self, runs: Iterable[Run]) -> Iterator[Row]:
-        """Rows of the finished ones among ``runs``, in that order, by the names of `COLUMNS`."""
-        for found in self._found(runs):
-            yield {name: found[name] for name in COLUMNS}
-
-    def seconds(self, runs: Iterable[Run]) -> Iterator[float]:
-        """Processor seconds of the finished ones among ``runs``, in that order."""
-        for found in self._found(runs):
-            yield found["seconds"]
+    def finished(self, runs: Iterable[Run]) -> Iterator[tuple[Row, float]]:
+        """Rows of the finished ones among ``runs``, by the names of `COLUMNS`, with their seconds."""
+        for run in runs:
+            with _refused(self._path):
+                row = self._connection.execute(f"{_SELECT} where key = ?", (run.key,)).fetchone()
+            if row is not None:
+                found = _checked(row, self._path)
+                yield {name: found[name] for name in COLUMNS}, found["seconds"]
 
     def check_place(self) -> None:
         """Raise InputError unless the opened file is still the one at the path."""
@@ -85,13 +85,6 @@ class Store:
         if there is None or not os.path.samestat(there, self._opened):
             found = "deleted" if there is None else "replaced"
             raise InputError("store", str(self._path), f"a file that stays: it was {found} during the sweep")
-
-    def _found(self, runs: Iterable[Run]) -> Iterator[Row]:
-        for run in runs:
-            with _refused(self._path):
-                row = self._connection.execute(f"{_SELECT} where key = ?", (run.key,)).fetchone()
-            if row is not None:
-                yield _checked(row, self._path)
 
 
 def _checked(row: Sequence[Any], path: Path) -> Row:
@@ -115,11 +108,6 @@ def checksum(values: Sequence[Any]) -> str:
 
 def _key(inputs: object) -> str:
     return hashlib.sha256(str(inputs).encode("utf-8", "replace")).hexdigest()[:32]
-
-
-def _is_nan(value: object) -> bool:
-    """SQLite keeps NaN as NULL."""
-    return isinstance(value, float) and math.isnan(value)
 
 
 def files_of(store: Path) -> tuple[Path, ...]:
@@ -190,7 +178,8 @@ def _connect(path: Path) -> sqlite3.Connection:
         connection = sqlite3.connect(address, uri=True, timeout=BUSY_SECONDS, isolation_level=None)
         try:
             connection.execute("pragma trusted_schema = off")
-            if _is_empty(connection):
+            tables = connection.execute("select count(*) from sqlite_master").fetchone()[0]
+            if tables == 0 and _pragma(connection, "application_id") == 0:  # new, or its creation was killed
                 connection.execute("begin immediate")
                 connection.execute(f"pragma application_id = {APPLICATION_ID}")
                 connection.execute(f"pragma user_version = {VERSION}")
@@ -249,12 +238,6 @@ def _holds_runs(connection: sqlite3.Connection) -> bool:
         return bool(connection.execute("select count(*) from runs").fetchone()[0])
     except sqlite3.Error:
         return True
-
-
-def _is_empty(connection: sqlite3.Connection) -> bool:
-    """Whether nothing was ever committed: a new file, or one whose creation was killed."""
-    tables = connection.execute("select count(*) from sqlite_master").fetchone()[0]
-    return tables == 0 and _pragma(connection, "application_id") == 0
 
 
 def _pragma(connection: sqlite3.Connection, name: str) -> int:

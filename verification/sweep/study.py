@@ -61,7 +61,7 @@ class Study:
     def measured(self) -> dict[str, str]:
         """Digests of all measured surfaces of the study by path; InputError for a missing file."""
         varied = [path for axis, paths in self.vary.items() if axis.endswith(".path") for path in paths]
-        return measured_files(self.scene) | digests_of(varied)
+        return digests_of([*measured_paths(self.scene), *varied])
 
     @property
     def own_axes(self) -> tuple[str, ...]:
@@ -101,19 +101,19 @@ class Study:
         for side, name in enumerate(("upper", "lower")):
             scene[name] = self._body(name, self.first_seed + 2 * k + side, point)
         grid = None if point["grid"] is None else int(point["grid"])
-        coordinates = {
-            "realisation": k,
-            "grid": grid,
-            "load": scene["load"],
-            "upper_rms": _random(scene["upper"]).get("rms", 0.0),
-            "lower_rms": _random(scene["lower"]).get("rms", 0.0),
-            "correlation_length": _length(scene),
-            "sliding_direction": scene["sliding_direction"],
-            "sliding_offset": scene["sliding_offset"],
-            "tau": scene["friction"]["tau"],
-            "beta": scene["friction"]["beta"],
-            "parameters": json.dumps(own) if (own := {axis: point[axis] for axis in self.own_axes}) else None,
-        }
+        own = {axis: point[axis] for axis in self.own_axes}
+        coordinates = (
+            scene
+            | scene["friction"]
+            | {
+                "realisation": k,
+                "grid": grid,
+                "upper_rms": _random(scene["upper"]).get("rms", 0.0),
+                "lower_rms": _random(scene["lower"]).get("rms", 0.0),
+                "correlation_length": _length(scene),
+                "parameters": json.dumps(own) if own else None,
+            }
+        )
         inputs = {
             "scene": scene,
             "grid": grid,
@@ -172,11 +172,6 @@ def measured_paths(scene: Table) -> list[str]:
     """Return the paths of a scene's measured surfaces."""
     parts = [part for name in ("upper", "lower") for part in scene[name]["surface"]]
     return [str(part["path"]) for part in parts if part["kind"] == "measured"]
-
-
-def measured_files(scene: Table) -> dict[str, str]:
-    """Return the digests of a scene's measured surfaces by path; raise InputError for a missing file."""
-    return digests_of(measured_paths(scene))
 
 
 def digests_of(paths: Iterable[str]) -> dict[str, str]:

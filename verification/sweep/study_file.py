@@ -145,11 +145,10 @@ def _check_settings(settings: Mapping[str, Any]) -> None:
     for name in ("oblique", "slope_correction"):
         if not isinstance(settings.get(name, True), bool):
             raise InputError(f"solve.{name}", settings[name], "true or false")
-    if "tolerance" in settings:
-        require_number("solve.tolerance", settings["tolerance"], "a number between 0 and 1", above=0, below=1)
-    if "accuracy" in settings:
-        require_number("solve.accuracy", settings["accuracy"], "a number between 0 and 1", above=0, below=1)
-    elif "quantity" in settings:
+    for name in ("tolerance", "accuracy"):
+        if name in settings:
+            require_number(f"solve.{name}", settings[name], "a number between 0 and 1", above=0, below=1)
+    if "quantity" in settings and "accuracy" not in settings:
         raise InputError("solve.quantity", settings["quantity"], "none without an accuracy")
     Terms(oblique=settings.get("oblique"), slope_correction=settings.get("slope_correction", False)).check()
 
@@ -170,11 +169,9 @@ def _values(axis: str, values: object, folder: Path) -> tuple[Any, ...]:
     allowed = "a finite number, or a list of different ones"
     if isinstance(values, int | float) and not isinstance(values, bool):
         values = [values]
-    if not isinstance(values, list) or not values:
-        raise InputError(f"vary.{axis}", values, allowed)
-    for value in values:
+    for value in values if isinstance(values, list) else ():
         require_number(f"vary.{axis}", value, allowed)
-    if len(set(values)) != len(values):
+    if not isinstance(values, list) or not values or len(set(values)) != len(values):
         raise InputError(f"vary.{axis}", values, allowed)
     if axis.endswith(".seed"):
         return tuple(_whole(f"vary.{axis}", value, at_least=0, below=2**63) for value in values)

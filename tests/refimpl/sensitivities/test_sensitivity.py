@@ -360,11 +360,47 @@ def test_of_peaks_that_tie_the_middle_answers() -> None:
     assert 0 < torn < 1.01 * abs(expected - middle) < 1.03 * torn  # from below the lowest of the answers
 
 
-@pytest.mark.parametrize(("E", "nu"), [(1e100, 0.3), (5e9, -0.99995), (5e9, 0.5)])
-def test_steps_stay_within_what_a_material_may_be(E: float, nu: float) -> None:
-    scene = replace(ROUGH, lower=rf.Body(rf.Material(E, nu), rf.Flat()))
+HARD = rf.Material(5e9, 0.3, hardness=1e9)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        *(
+            replace(ROUGH, lower=rf.Body(material, rf.Flat()))
+            for material in (
+                rf.Material(1e100, 0.3),
+                rf.Material(5e9, -0.99995),
+                rf.Material(5e9, 0.5),
+                rf.Material(5e9, 0.3, hardness=1e30),
+            )
+        ),
+        rf.Scene(
+            upper=rf.Body(STEEL, rf.Flat()),
+            lower=rf.Body(HARD, rf.GaussianRoughness(2e-6, 4e-4, seed=3)),
+            friction=rf.Friction(beta=0.2),
+            load=0.95 * 1e9 * 1.6e-3**2,
+            side=1.6e-3,
+        ),
+        replace(ROUGH, lower=rf.Body(COPPER, rf.GaussianRoughness(1e-7, ROUGH.side, seed=3, normalise=True))),
+        replace(ROUGH, lower=rf.Body(COPPER, rf.GaussianRoughness(1e-30, 4e-4, seed=3))),
+    ],
+    ids=["E", "least nu", "largest nu", "hardness", "load", "length", "rms"],
+)
+def test_steps_stay_within_what_is_allowed(scene: rf.Scene) -> None:
     found = sensitivity(scene, rf.solve(scene, 16))
     assert all(np.isfinite(value) for values in found.derivatives.values() for value in values.values())
+
+
+def test_a_value_without_allowed_neighbours_is_named(
+    solution: rf.Solution, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: Any) -> rf.Scene:
+        raise rf.InputError("load", 77.0, "less")
+
+    monkeypatch.setattr(sys.modules["refimpl.sensitivities.sensitivity"], "with_parameter", refuse)
+    with pytest.raises(rf.InputError, match=r"load = 70\.0: expected a value with another allowed one"):
+        sensitivity(ROUGH, solution)
 
 
 GROUND = rf.GaussianRoughness(rms=2e-6, correlation_length=(600e-6, 300e-6), seed=3, lay=0.4)

@@ -20,6 +20,7 @@ from pathlib import Path
 import pytest
 
 from refimpl.solvers.production.projected_cg import ProjectedCG
+from tests.reports import sample
 from tests.verification.cli.children import LONG, Ended, forked, one_line, started
 from tests.verification.cli.commands import run
 from verification.cli import main, solve
@@ -176,6 +177,27 @@ def test_a_closed_pipe_ends_quietly_and_costs_no_file(name: str, tmp_path: Path)
     assert (ended.returncode, ended.stderr) == (0, b"")
     if name != "-":
         assert json.loads((tmp_path / name).read_text())["status"] == "converged"
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "solve hertz --grid 8",
+        "sweep study.toml",
+        "verify --only kernels/normal-50-digits",
+        pytest.param("report --results r.json --output out", marks=pytest.mark.nightly),
+    ],
+)
+def test_a_closed_standard_error_changes_nothing(command: str, tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text('scene = "hertz"\n[vary]\ngrid = [4]\n')
+    (tmp_path / "r.json").write_text(json.dumps(sample.results(sample.case("a/1"))))
+    done = subprocess.run(
+        ["sh", "-c", f'exec "$@" {command} 2>&-', "sh", sys.executable, "-c", START],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+    )
+    assert done.returncode == 0
+    assert done.stdout
 
 
 @pytest.mark.parametrize("out", ["-", pytest.param("r.json", marks=pytest.mark.nightly)])

@@ -17,6 +17,7 @@ WEDGE = "appendix-a wedge --r 1 --theta-deg 0 --gamma-deg"
 STRIP = "appendix-a strip --slope-deg 6.5 --wavelength 100 --position 0.25 --nu 0.3 --offsets=-3,3"
 FEM = STRIP.replace("strip", "fem")
 ELEMENT = "appendix-a element --slope-deg 9 --nu 0.3"
+LOOK_UP = "appendix-a look-up --slope-deg 6.5 --position 0.25 --nu 0.3 --wavelength"
 MAP = "appendix-a map"
 PIXELS = "--unit um --pixel-size 1e-6"
 
@@ -53,6 +54,9 @@ COMMANDS = [
     (f"{ELEMENT} --upper-nu 0.3", "--upper-E = None: expected both"),
     (f"{ELEMENT} --upper-nu 0.3 --upper-E 0", "--upper-E = 0.0"),
     (f"{ELEMENT} --upper-E 200", "--upper-nu"),
+    (f"{ELEMENT} --nu nan", "--nu: 'nan' is not a finite number"),
+    (f"{LOOK_UP} 64 --E 1e308 --upper-E 1e-320 --upper-nu 0.2", "--E = 1e+308"),
+    (f"{LOOK_UP} inf", "--wavelength: 'inf' is not a finite number"),
     ("appendix-a surface hertz --pixel-size 1e-6", "--pixel-size = 1e-06"),
     ("appendix-a surface hertz --nu 0.2", "--nu"),
     ("appendix-a surface nothing.sur", "a surface's file"),

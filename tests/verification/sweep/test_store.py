@@ -274,6 +274,6 @@ def test_numbers_that_do_not_exist_are_kept_as_none(tmp_path: Path, finished: tu
     with open_store(tmp_path / "s.sqlite") as kept:
         kept.add(run, row | {"friction_coefficient": float("nan")}, seconds)
     with open_store(tmp_path / "s.sqlite") as kept:
-        (found,) = kept.rows([run])
+        ((found, _),) = kept.finished([run])
     assert found["friction_coefficient"] is None
     assert tuple(found) == COLUMNS

@@ -80,14 +80,6 @@ def _within(around: float) -> Map:
     return map_
 
 
-def _rolled(field: Array) -> Array:
-    return np.roll(field, SHIFT, (0, 1))
-
-
-def _tiled(field: Array) -> Array:
-    return np.tile(field, (2, 2))
-
-
 def _invariant(slug: str, title: str, claim: str, source: str, fault: F | None, judge: Judge) -> Check:
     return Check(slug, title, claim, source, 4.1, TWICE, () if fault is None else (fault,), judge)
 
@@ -125,10 +117,12 @@ CHECKS = (
     _invariant("periodic-shift", "A periodic plane shifted by whole elements",
                "The shifted gap has the shifted pressure, across the square's border as well",
                "translation of a periodic problem", F.APERIODIC_FOR_PERIODIC,
-               images(wavy(24, 49), same(_rolled), load=LIGHT, periodic=True)),
+               images(wavy(24, 49), same(lambda field: np.roll(field, SHIFT, (0, 1))),
+                      load=LIGHT, periodic=True)),
     _invariant("periodic-tiling", "Four periods in one square",
                "Two by two copies of a periodic gap have two by two copies of its pressure",
                "a periodic problem has all multiples of its period", F.APERIODIC_FOR_PERIODIC,
-               images(wavy(16, 50), same(_tiled, side=2.0, load=4 * LIGHT), load=LIGHT, periodic=True)),
+               images(wavy(16, 50), same(lambda field: np.tile(field, (2, 2)), side=2.0, load=4 * LIGHT),
+                      load=LIGHT, periodic=True)),
 )
 # fmt: on

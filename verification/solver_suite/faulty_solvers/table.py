@@ -61,10 +61,6 @@ def periodic(problem: ContactProblem) -> ContactProblem:
     return replace(problem, periodic=True, approach=approach)
 
 
-def _aperiodic(problem: ContactProblem) -> ContactProblem:
-    return replace(problem, periodic=False, approach=problem.approach_from_touch)
-
-
 def _coupled(change: Callable[[Coupling], Coupling]) -> Solver:
     """Return a solver with other friction, where there is any."""
 
@@ -101,12 +97,6 @@ def _pulling(problem: ContactProblem) -> Array:
     beside = ~contact & (np.roll(contact, 1, axis=0) | np.roll(contact, -1, axis=1))
     pulled = np.where(beside, -1e-3 * pressure.max(), pressure)
     return np.asarray(pulled * (pressure.sum() / pulled.sum()))
-
-
-def _clipped(problem: ContactProblem) -> Array:
-    """Pressures below a fixed 20 mPa count as none."""
-    pressure = right(problem)
-    return np.where(pressure < 0.02, 0.0, pressure)
 
 
 def _modulus_kept() -> Solver:
@@ -160,7 +150,9 @@ FAULTY: dict[Fault, Callable[[], Contestant]] = {
     Fault.SIGN_OF_C: lambda: Faulty(_coupled(lambda c: replace(c, shear_compliance=-c.shear_compliance))),
     Fault.TAU_MISSING: lambda: Faulty(_coupled(lambda c: replace(c, tau=0.0))),
     Fault.PERIODIC_FOR_APERIODIC: lambda: Faulty(asked(periodic)),
-    Fault.APERIODIC_FOR_PERIODIC: lambda: Faulty(asked(_aperiodic)),
+    Fault.APERIODIC_FOR_PERIODIC: lambda: Faulty(
+        asked(lambda p: replace(p, periodic=False, approach=p.approach_from_touch))
+    ),
     Fault.MODULUS_OFF: lambda: Faulty(asked(lambda p: replace(p, reduced_modulus=1.01 * p.reduced_modulus))),
     Fault.MODULUS_DOUBLED: lambda: Faulty(asked(lambda p: replace(p, reduced_modulus=2 * p.reduced_modulus))),
     Fault.MODULUS_KEPT: lambda: Faulty(_modulus_kept()),
@@ -172,7 +164,7 @@ FAULTY: dict[Fault, Callable[[], Contestant]] = {
     Fault.EDGES_EXCHANGED: lambda: Faulty(asked(_edges_exchanged)),
     Fault.MEAN_PRESSURE_LOST: lambda: Faulty(asked(_mean_pressure_lost)),
     Fault.TENSION: lambda: Faulty(_pulling),
-    Fault.ABSOLUTE_THRESHOLD: lambda: Faulty(_clipped),
+    Fault.ABSOLUTE_THRESHOLD: lambda: Faulty(lambda p: np.where((f := right(p)) < 0.02, 0.0, f)),  # 20 mPa
     Fault.HARDNESS_IGNORED: lambda: Faulty(asked(lambda p: replace(p, hardness=None))),
     Fault.APPROACH_SIGN: lambda: Faulty(right, _APPROACH_REVERSED),
 }

@@ -8,6 +8,7 @@ shares nothing with the solver.
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -77,13 +78,13 @@ def certified(problem: ContactProblem) -> Certified:
     solution = own.solved(problem, TOLERANCE)
     pressure = np.asarray(solution.pressure)
     load = float(pressure.sum()) * problem.element_area
-    approach = problem.approach
+    approach, residual = problem.approach, None
     if not pressure.any():
         bounds, inside, outside = _apart(problem), pressure > 0, pressure == 0
-        residual = None
     else:
         bounds, inside, outside = _bounded(problem, pressure, solution)
-        residual = _residual(problem, pressure)
+        with suppress(ValueError):  # uniform periodic pressures store no energy to judge by
+            residual = reference_solution.residual(problem, pressure)
         if not bounds.pressure <= USABLE * float(pressure.max()):
             raise NotCertified(f"pressures are known to {bounds.pressure:.2g} Pa of {pressure.max():.2g} Pa")
     if approach is None:
@@ -91,14 +92,6 @@ def certified(problem: ContactProblem) -> Certified:
     condition = AT_FIXED_TAU if problem.coupling and problem.coupling.tau else ""
     codes = _codes(pressure > 0, inside, outside)
     return Certified(problem, pressure, approach, load, residual, bounds, codes, condition)
-
-
-def _residual(problem: ContactProblem, pressure: Array) -> reference_solution.Residual | None:
-    """Recomputed residual, or None of uniform periodic pressures: they store no energy to judge by."""
-    try:
-        return reference_solution.residual(problem, pressure)
-    except ValueError:
-        return None
 
 
 def _apart(problem: ContactProblem) -> Bounds:

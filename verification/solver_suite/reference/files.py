@@ -60,9 +60,8 @@ class Export:
         try:
             self._draft = Path(tempfile.mkdtemp(dir=folder.absolute().parent, prefix=f".{folder.name[:40]}."))
         except OSError as refused:
-            raise InputError(
-                "--export", str(folder), f"a directory that can be written ({refused.strerror})"
-            ) from refused
+            allowed = f"a directory that can be written ({refused.strerror})"
+            raise InputError("--export", str(folder), allowed) from refused
         (self._draft / "data").mkdir()
         self._entries: list[dict[str, Any]] = []
         self._uncertified: list[dict[str, str]] = []
@@ -109,7 +108,8 @@ class Export:
         sums = checksums(self._draft)
         self._write(SUMS, "".join(f"{digest}  {name}\n" for name, digest in sums.items()))
         version = version_of(self._draft)
-        self._write(CITATION, _citation(version))
+        names = {"software": versions()[DISTRIBUTION], "suite": suite.identity()["version"]}
+        self._write(CITATION, _text("citation.cff").format(version=version, **names))
         self._draft.chmod(0o755)
         if self.folder.exists():
             self.folder.rmdir()
@@ -134,14 +134,7 @@ def _numbers(found: Certified) -> dict[str, Any]:
         "condition": found.condition,
         "residual": residual,
     }
-    return {"problem": {name: _plain(header[name]) for name in shown}, "answer": answer}
-
-
-def _plain(value: Any) -> Any:
-    """Python's own numbers in place of numpy's."""
-    if isinstance(value, tuple):
-        return [_plain(each) for each in value]
-    return value.item() if isinstance(value, np.generic) else value
+    return {"problem": {name: np.asarray(header[name]).tolist() for name in shown}, "answer": answer}
 
 
 def _table(entries: Iterable[Mapping[str, Any]]) -> str:
@@ -179,11 +172,6 @@ def licence() -> str:
     if text is None:
         raise FileNotFoundError("the licence of rough-friction is not installed")
     return text
-
-
-def _citation(version: str) -> str:
-    software = versions()[DISTRIBUTION]
-    return _text("citation.cff").format(version=version, software=software, suite=suite.identity()["version"])
 
 
 def _text(name: str) -> str:

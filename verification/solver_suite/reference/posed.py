@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 from verification.solver_suite import own
 from verification.solver_suite.protocol import Abilities, Answer, ContactProblem
@@ -13,8 +14,7 @@ LARGEST = 64
 """Most elements along one axis of an exported problem."""
 
 
-@dataclass(frozen=True)
-class PosedProblem:
+class PosedProblem(NamedTuple):
     """A problem with its name: the slug of its case, and a number where the case poses several."""
 
     name: str
@@ -44,10 +44,9 @@ def problems(globs: Iterable[str] = (), largest: int = LARGEST) -> Iterator[Pose
     for case in select(globs):
         recorder = _Recorder(replace(own.solve.abilities, largest=largest))
         case.case(recorder).run()
-        new = [problem for problem in recorder.problems if _key(problem) not in seen]
-        new = list({_key(problem): problem for problem in new}.values())
-        seen.update(map(_key, new))
-        for number, problem in enumerate(new, start=1):
+        new = {key: problem for problem in recorder.problems if (key := _key(problem)) not in seen}
+        seen |= new.keys()
+        for number, problem in enumerate(new.values(), start=1):
             yield PosedProblem(f"{case.slug}-{number}" if len(new) > 1 else case.slug, case.id, problem)
 
 

@@ -122,13 +122,10 @@ def of_ratios(upper: float, lower: float, method: Method) -> Judged:
 def materials() -> Iterator[Extreme]:
     """Poisson's ratio of one body, of both; the modulus of the lower body over the upper one's."""
     for method in SOLVERS:
-        for series, ratios, upper in (
-            ("nu of the lower body", RATIOS, STEEL.nu),
-            ("nu of both", RATIOS[1:-1], None),
-        ):
-            for nu in ratios:
-                run = partial(of_ratios, nu if upper is None else upper, nu, method)
-                yield Extreme(f"{series}, {method}", f"{nu!r}", nu, run)
+        of_one = [("nu of the lower body", STEEL.nu, nu) for nu in RATIOS]
+        for series, upper, nu in (*of_one, *(("nu of both", nu, nu) for nu in RATIOS[1:-1])):
+            run = partial(of_ratios, upper, nu, method)
+            yield Extreme(f"{series}, {method}", f"{nu!r}", nu, run)
         for exponent in range(-6, 7):
             scene = pair(STEEL, rf.Material(STEEL.E * 10.0**exponent, 0.1))
             yield state("modulus ratio", f"1e{exponent}", 10.0**exponent, scene, method)

@@ -12,7 +12,7 @@ import numpy as np
 import refimpl as rf
 from refimpl.grid import Array
 from refimpl.planning.plan import Method
-from verification.scenes.cross_checks import POLYMER, STEEL, TABLE1
+from verification.scenes.cross_checks import POLYMER, STEEL, TABLE1, pressed
 from verification.stress_tests.judge import GOOD, SOLVERS, TOLERANCE, M, change, guarded, state, verdict
 from verification.stress_tests.state import Extreme, Judged
 
@@ -29,14 +29,9 @@ inverse (condition number 30 at this size) and the relative size of gap and appr
 
 def rough_ball(heights: Array, radius: float = 0.14, load: float = 1.0) -> rf.Scene:
     """A ball on a polymer with the given heights."""
-    return rf.Scene(
-        upper=rf.Body(STEEL, rf.Sphere(radius)),
-        lower=rf.Body(POLYMER, heights),
-        friction=replace(TABLE1, tau=1e5),
-        load=load,
-        side=SIDE,
-        sliding_direction=0.7,
-    )
+    law = replace(TABLE1, tau=1e5)
+    ball = pressed(radius=radius, rms=None, friction=law, load=load, side=SIDE, direction=0.7)
+    return replace(ball, lower=rf.Body(POLYMER, heights))
 
 
 def sloped(angle: float) -> Array:
