@@ -176,11 +176,11 @@ def ensemble_table(seed: int) -> SyntheticTable:
 
 
 def true_friction(scene: rf.Scene, load: float, grid: int) -> float:
-    """Return mu on a fine grid. Raises ArithmeticError where the solve does not converge."""
+    """Return the corrected mu on a fine grid. Raises ArithmeticError where the solve does not converge."""
     solution = rf.solve(replace(scene, load=load), grid)
     if not solution.converged:
         raise ArithmeticError(f"the solve at {load:.4g} N ended as {solution.status.value}")
-    return float(solution.friction_coefficient)
+    return float(solution.friction_coefficient_corrected)
 
 
 def without_friction(scene: rf.Scene) -> rf.Scene:

@@ -131,7 +131,7 @@ def solves() -> Measured:
 def _noisy_rows(scene: rf.Scene, count: int = 10) -> list[Row]:
     rng, rows = np.random.default_rng(7), []
     for load in map(float, np.geomspace(2, 80, count)):
-        mu = rf.solve(replace(scene, load=load), FINE).friction_coefficient
+        mu = rf.solve(replace(scene, load=load), FINE).friction_coefficient_corrected
         u = 0.01 * mu
         rows.append(Row(load, mu + u * float(rng.normal()), u))
     return rows
