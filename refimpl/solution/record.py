@@ -13,7 +13,7 @@ import numpy as np
 
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.bounds.proven_bounds import Bounds, proven_bounds
-from refimpl.errors import InputError
+from refimpl.errors import require_one_of
 from refimpl.grid import Array, Grid, Mask
 from refimpl.half_space.influence_error import SlopeError
 from refimpl.half_space.model_form import ModelForm, model_form
@@ -234,8 +234,7 @@ class Record(Parts):
 
         A/A0 has that of A; a number without any part has 0. Raises `InputError` for an unknown name.
         """
+        require_one_of("error", name, UNITS)
         if name == "contact_area_share":
             return self.error("contact_area") / math.prod(self.grid.lengths)
-        if name not in UNITS:
-            raise InputError("error", name, f"one of {', '.join(UNITS)}")
         return math.fsum(self.uncertainty.get(name, {}).values())
