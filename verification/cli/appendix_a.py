@@ -13,7 +13,7 @@ from typing import Any
 
 from verification.cli import appendix_tables, half_space
 from verification.cli.options import Options, Parsers, declare, number, numbers, option, subcommand
-from verification.cli.output import columns, emit
+from verification.cli.output import check_workers, columns, emit
 
 # A table is of a slope's square, so none of zero; half a period of positions is all, the rest is its mirror.
 MAP_RANGES = {
@@ -144,8 +144,7 @@ def coefficient_map(options: argparse.Namespace) -> int:
     from refimpl.errors import InputError
     from verification.framework.files import Progress
 
-    if options.jobs < 1:
-        raise InputError("--jobs", options.jobs, "at least one worker process")
+    check_workers("--jobs", options.jobs)
     axes = {
         "slopes-deg": tuple(options.slopes_deg or SLOPES_DEG),
         "wavelengths": tuple(options.wavelengths or WAVELENGTHS),

@@ -14,6 +14,7 @@ from verification.cli.output import (
     StatusLine,
     check_outputs,
     check_suffix,
+    check_workers,
     columns,
     emit,
     plain,
@@ -84,13 +85,11 @@ def add_parser(commands: Parsers) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Run what is missing and export; status 1 when a run failed, did not converge, or a worker was lost."""
-    from refimpl.errors import InputError
     from verification.sweep import engine, export, posable
     from verification.sweep.store import files_of
     from verification.sweep.study_file import read_study
 
-    if options.workers < 1:
-        raise InputError("--workers", options.workers, "at least one worker process")
+    check_workers("--workers", options.workers)
     if options.parquet is not None:
         export.require_parquet(options.parquet)
     store = options.store or Path(Path(options.study).stem + ".sqlite")
