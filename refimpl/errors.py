@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import numbers
+import os
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 LEAST, MOST = 1e-30, 1e30  # lengths, moduli and loads in SI: their squares and products are doubles
@@ -120,6 +122,29 @@ def require_size(field: str, value: object, allowed: str) -> None:
     refimpl.errors.InputError: side = 1e-200: expected a positive length in m, 1e-30 to 1e+30
     """
     require_number(field, value, f"{allowed}, {LEAST} to {MOST}", at_least=LEAST, at_most=MOST)
+
+
+def require_one_of(field: str, value: object, allowed: Iterable[str]) -> None:
+    """Raise `InputError` unless ``value`` is one of these texts.
+
+    >>> require_one_of("method", ["fft"], ("fft", "dense"))
+    Traceback (most recent call last):
+    ...
+    refimpl.errors.InputError: method = ['fft']: expected one of fft, dense
+    """
+    known = tuple(allowed)
+    if not isinstance(value, str) or value not in known:
+        raise InputError(field, value, f"one of {', '.join(known)}")
+
+
+def require_regular(field: str, path: Path, most: int) -> None:
+    """Raise `InputError` for a device or a pipe, which may have no end, and for a file of more bytes.
+
+    What does not exist, and folders, are for the system to refuse.
+    """
+    found = os.path.exists(path) and not os.path.isdir(path)  # no error for long names
+    if found and not (os.path.isfile(path) and os.path.getsize(path) <= most):
+        raise InputError(field, str(path), f"a regular file of at most {most} bytes")
 
 
 def size_text(lengths: Iterable[float]) -> str:

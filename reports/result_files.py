@@ -30,7 +30,10 @@ def read_result(path: Path) -> Any:
 
     Raises OSError for a file that cannot be read, and ValueError for one that is damaged or not JSON.
     """
-    content = path.read_bytes()
+    with path.open("rb") as file:
+        content = file.read(MOST_BYTES + 1)  # a device has no end
+    if len(content) > MOST_BYTES:
+        raise ValueError(f"more than {MOST_BYTES} bytes")
     if content.startswith(_MAGIC):
         content = _decompressed(content)
     return json.loads(content.decode(), parse_constant=_refuse)

@@ -12,10 +12,10 @@ def run(arguments: Sequence[str] | None = None) -> int:
     """Import the command line, which takes a while, and run it; returns the exit status.
 
     Until `verification.cli.main` takes over, an interrupt ends the process as the system does. Where it is
-    ignored, as in a shell's background job, it stays so. What goes to a standard error that is closed is lost.
+    ignored, as in a shell's background job, it stays so. Messages to a closed standard error are lost.
     """
     if sys.stderr is None:  # `2>&-`; a file opened later must not become descriptor 2 of child processes
-        sys.stderr = open(os.devnull, "w")
+        sys.stderr = os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
         os.set_inheritable(sys.stderr.fileno(), True)
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -14,7 +14,7 @@ from typing import Literal
 from refimpl.accuracy.discretisation_error import discretisation, estimates
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.iteration_error import Uncertainty, merged
-from refimpl.errors import InputError, require_number
+from refimpl.errors import InputError, require_number, require_one_of
 
 Quantity = Literal[
     "friction_coefficient_corrected",
@@ -47,8 +47,7 @@ def check_accuracy(accuracy: float) -> None:
 
 def check_quantity(quantity: str) -> None:
     """Raise `InputError` unless the quantity is one that an accuracy applies to."""
-    if quantity not in QUANTITIES:
-        raise InputError("quantity", quantity, f"one of {', '.join(QUANTITIES)}")
+    require_one_of("quantity", quantity, QUANTITIES)
 
 
 def tolerance_for(accuracy: float) -> float:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from refimpl.accuracy.refinement import Quantity, check_accuracy, check_quantity, tolerance_for
 from refimpl.driver.limits import Limits
-from refimpl.errors import InputError, keep_doubles, require_number
+from refimpl.errors import InputError, keep_doubles, require_number, require_one_of
 from refimpl.grid import Grid
 from refimpl.model.friction import is_frictionless
 from refimpl.model.problem import Terms
@@ -62,8 +62,7 @@ class Options:
         keep_doubles(self, "accuracy", "approach", "tolerance")
 
     def _check_method(self) -> None:
-        if self.method not in METHODS:
-            raise InputError("method", self.method, f"one of {', '.join(METHODS)}")
+        require_one_of("method", self.method, METHODS)
         if self.method == "paper" and self.scene.periodic:
             raise InputError("method", self.method, "dense or fft for a periodic scene")
 

@@ -1,10 +1,11 @@
 """The grid of traction elements, windows of it, and fields on it."""
 
-from refimpl.grid.fields import Array, Mask, differences, inner, resampled, second_differences
-from refimpl.grid.grid import Grid
+from refimpl.grid.fields import Array, Mask, differences, inner, read_only, resampled, second_differences
+from refimpl.grid.grid import MAX_COUNT, Grid
 from refimpl.grid.window import Shape, Window
 
 __all__ = [
+    "MAX_COUNT",
     "Array",
     "Grid",
     "Mask",
@@ -12,6 +13,7 @@ __all__ = [
     "Window",
     "differences",
     "inner",
+    "read_only",
     "resampled",
     "second_differences",
 ]

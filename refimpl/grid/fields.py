@@ -26,6 +26,16 @@ def inner(a: Array, b: Array) -> float:
     return float(rows.sum())
 
 
+def read_only(values: Array) -> Array:
+    """Return the array itself, which can no longer be written to.
+
+    >>> read_only(np.zeros(2)).flags.writeable
+    False
+    """
+    values.flags.writeable = False
+    return values
+
+
 def resampled(values: Array, shape: tuple[int, int]) -> Array:
     """Interpolate bilinearly to the element centres of another grid on the same rectangle.
 

@@ -12,6 +12,7 @@ from refimpl.errors import InputError, require_size
 from refimpl.grid.fields import Array, Mask, differences
 from refimpl.grid.window import Window
 
+MAX_COUNT = 10**9  # elements a side; products of two are whole numbers of 64 bits
 _ROUNDING = 1e-15  # relative difference of two edges: each is a quotient of rounded numbers
 
 
@@ -35,8 +36,9 @@ class Grid:
     def __post_init__(self) -> None:
         for count in self.shape:
             whole = isinstance(count, int | np.integer) and not isinstance(count, bool)
-            if not (whole and count >= 1):
-                raise InputError("grid", count, "a whole number of elements per side, at least 1")
+            if not (whole and 1 <= count <= MAX_COUNT):
+                allowed = f"a whole number of elements per side, 1 to {MAX_COUNT}"
+                raise InputError("grid", count, allowed)
         for length in self.lengths:
             require_size("side", length, "a positive length in m")
         object.__setattr__(self, "shape", tuple(int(count) for count in self.shape))

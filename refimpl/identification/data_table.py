@@ -5,13 +5,12 @@ from __future__ import annotations
 import csv
 import itertools
 import math
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from refimpl.errors import InputError
+from refimpl.errors import MOST, InputError, require_number, require_regular, require_size
 from refimpl.measured.measured_surface import MeasuredSurface
 from refimpl.scene.scene import Body, Scene
 
@@ -75,9 +74,8 @@ def read_rows(path: str | Path) -> tuple[Row, ...]:
     "#" are comments. Raises `InputError`, which names the line, for anything else.
     """
     path = Path(path)
+    require_regular("data", path, MAX_BYTES)
     try:
-        if os.path.isfile(path) and path.stat().st_size > MAX_BYTES:
-            raise InputError("data", str(path), f"a table of at most {MAX_BYTES} bytes")
         text = path.read_text(encoding="utf-8-sig")
     except OSError as refused:
         raise InputError("data", str(path), f"a file that can be read ({refused.strerror})") from refused
@@ -131,10 +129,9 @@ def _row(header: Sequence[str], quantity: str, k: int, cells: Sequence[str], fol
     }
     load, value, spread = (numbers[name] for name in ("load", quantity, _FRICTION[quantity]))
     for name, number in (("load", load), (_FRICTION[quantity], spread)):
-        if not number > 0:
-            raise InputError(f"data line {k}: {name}", number, "a positive number")
-    if value < 0:
-        raise InputError(f"data line {k}: {quantity}", value, "a number that is not negative")
+        require_size(f"data line {k}: {name}", number, "a positive number")
+    allowed = f"a number that is not negative, at most {MOST}"
+    require_number(f"data line {k}: {quantity}", value, allowed, at_least=0, at_most=MOST)
     scale = 1.0 if quantity == "mu" else load
     files = {name: str(folder / text) for name in _FILES if (text := found.get(name))}
     frame = {name: numbers[name] for name in _FRAME if name in numbers}

@@ -12,9 +12,8 @@ from typing import Protocol
 import numpy as np
 from scipy.optimize import least_squares
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, require_one_of
 from refimpl.grid import Array
-from refimpl.surfaces.surface import require_one_of
 
 DEGREES = {"none": -1, "mean": 0, "plane": 1, "paraboloid": 2}
 CURVED = ("cylinder", "sphere")

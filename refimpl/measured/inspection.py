@@ -21,6 +21,7 @@ from refimpl.measured.areal_parameters import (
 )
 from refimpl.measured.measured_surface import MeasuredSurface
 from refimpl.measured.roughness_fit import RoughnessFit, fit_roughness
+from refimpl.surfaces.surface import pixel_edges
 
 SAL_LEVEL = 0.2  # ISO 25178-2
 
@@ -132,7 +133,7 @@ def inspect(
         surface = path
     else:
         surface = MeasuredSurface(path, **{"max_missing": 1.0 - 1e-9} | keys)
-    lengths = surface.extent((0.0, 0.0)) if size is None else size
+    lengths = surface.extent((0.0, 0.0)) if size is None else pixel_edges("size", size)
     form, z, pixel = surface.levelled(lengths)
     slopes = tuple(float(slope / edge) for slope, edge in zip(form.slopes, pixel, strict=True))
     return Inspection(surface, z, pixel, (slopes[0], slopes[1]), form.radius)

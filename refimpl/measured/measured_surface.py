@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from refimpl.errors import InputError, size_text
+from refimpl.errors import InputError, require_one_of, size_text
 from refimpl.grid import Array, Grid
 from refimpl.measured.crop import ROUNDING, Crop, extent
 from refimpl.measured.detrending import Form, check_level, fit_form
@@ -20,7 +20,7 @@ from refimpl.measured.readers import UNITS, RawHeights, read
 from refimpl.measured.untrusted import read_untrusted, refuse_huge
 from refimpl.surfaces.bicubic import MEMORY, resample, resample_periodic
 from refimpl.surfaces.from_table import KINDS
-from refimpl.surfaces.surface import Surface, finite, pixel_edges, require_one_of
+from refimpl.surfaces.surface import Surface, finite, pixel_edges
 
 _ALLOWED_FRACTION = "a fraction, 0 <= max_missing < 1"
 
@@ -86,6 +86,7 @@ class MeasuredSurface(Surface):
         check_level(self.level, self.repeats)
         check_preparation(self.channel, self.outliers, self.low_pass, self.high_pass)
         check_orientation(self.mirror, self.rotate_deg, self.turn_over)
+        object.__setattr__(self, "rotate_deg", int(self.rotate_deg))
         if self.centre is not None:
             object.__setattr__(self, "centre", checked_centre(self.centre))
         require_one_of("missing", self.missing, ("fill", "refuse"))

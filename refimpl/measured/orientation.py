@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from refimpl.errors import InputError
+from refimpl.errors import MOST, InputError, require_number, require_one_of
 from refimpl.measured.readers import RawHeights
-from refimpl.surfaces.surface import finite, require_one_of
 
 TURNS = (0, 90, 180, 270)  # degrees, anticlockwise seen from outside the body
 MIRRORS = ("x", "y")
@@ -18,8 +17,10 @@ def check_orientation(mirror: object, rotate_deg: object, turn_over: object) -> 
     """Raise InputError for keys of a measured surface that are out of range; None is not set."""
     if mirror is not None:
         require_one_of("mirror", mirror, MIRRORS)
-    if isinstance(rotate_deg, bool) or rotate_deg not in TURNS:
-        raise InputError("rotate_deg", rotate_deg, f"one of {', '.join(map(str, TURNS))}")
+    allowed = f"one of {', '.join(map(str, TURNS))}"
+    require_number("rotate_deg", rotate_deg, allowed)
+    if rotate_deg not in TURNS:
+        raise InputError("rotate_deg", rotate_deg, allowed)
     if not isinstance(turn_over, bool | None):
         raise InputError("turn_over", turn_over, "true or false")
 
@@ -29,8 +30,9 @@ def checked_centre(centre: object) -> tuple[float, float]:
     allowed = "two lengths in m from the corner of the file's own area, (x, y)"
     if not isinstance(centre, list | tuple) or len(centre) != 2:
         raise InputError("centre", centre, allowed)
-    x, y = (finite("centre", at, allowed) for at in centre)
-    return x, y
+    for at in centre:
+        require_number("centre", at, allowed, at_least=-MOST, at_most=MOST)
+    return float(centre[0]), float(centre[1])
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from refimpl.grid import Array, Mask, Window, inner
+from refimpl.grid import Array, Mask, Window, inner, read_only
 from refimpl.model.elasticity import Influence
 from refimpl.model.forces import (
     Forces,
@@ -97,6 +97,12 @@ class State:
     excluded: Mask
     status: Status = Status.CONVERGED
     iterations: Mapping[str, int] = field(default_factory=dict)
+
+    def freeze(self) -> None:
+        """Make the arrays read-only, without copies."""
+        own = (value for value in vars(self).values() if isinstance(value, np.ndarray))
+        for array in (*own, self.slopes.tan_x, self.slopes.tan_y):
+            read_only(array)
 
     @property
     def contact(self) -> Mask:

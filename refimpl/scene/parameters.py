@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from refimpl.errors import InputError, require_number
+from refimpl.errors import InputError, require_number, require_one_of
 from refimpl.scene.scene import Body, Scene
 
 BODIES = ("upper", "lower")
@@ -39,8 +39,7 @@ def with_parameter(scene: Scene, name: str, value: float) -> Scene:
 
     Raises `InputError` for a name that is none of `parameters(scene)`, and for a value out of range.
     """
-    if name not in parameters(scene):
-        raise InputError("parameter", name, f"one of {', '.join(parameters(scene))}")
+    require_one_of("parameter", name, parameters(scene))
     head, _, key = name.rpartition(".")
     if not head:
         return replace(scene, load=value)

@@ -21,7 +21,7 @@ from refimpl.errors import (
     size_text,
     within,
 )
-from refimpl.grid import Array, Grid
+from refimpl.grid import MAX_COUNT, Array, Grid
 from refimpl.model.friction import Friction
 from refimpl.model.materials import Material, Pair
 from refimpl.surfaces import Surface, SurfaceSum, SurfaceWarning, as_surface
@@ -177,7 +177,7 @@ class Scene:
 
     def _nearest_to_square(self, longest: Any) -> tuple[Any, Any]:
         (Lx, Ly), high = self.lengths, max(self.lengths)
-        if Lx == Ly or not isinstance(longest, int | np.integer):
+        if Lx == Ly or not isinstance(longest, int | np.integer) or longest > MAX_COUNT:
             return longest, longest
         exact = float(longest) * min(Lx, Ly) / high
         fewer = math.floor(exact)

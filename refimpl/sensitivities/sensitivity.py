@@ -29,7 +29,7 @@ import numpy as np
 
 from refimpl.accuracy.discretisation_error import AREA, area_scatter
 from refimpl.driver.solve import solve
-from refimpl.errors import InputError
+from refimpl.errors import InputError, require_one_of
 from refimpl.grid import Array
 from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem, Terms
@@ -70,10 +70,8 @@ class Sensitivity:
 
         Raises `InputError` for a number that is zero, and for a name that is none.
         """
-        if number not in self.derivatives:
-            raise InputError("number", number, f"one of {', '.join(self.derivatives)}")
-        if parameter not in self.parameters:
-            raise InputError("parameter", parameter, f"one of {', '.join(self.parameters)}")
+        require_one_of("number", number, self.derivatives)
+        require_one_of("parameter", parameter, self.parameters)
         derivative, found = self.derivatives[number][parameter], self.found[number]
         if found == 0:
             raise InputError("number", number, "one that is not zero")

@@ -13,8 +13,8 @@ import numpy as np
 
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.bounds.proven_bounds import Bounds, proven_bounds
-from refimpl.errors import InputError
-from refimpl.grid import Array, Grid, Mask
+from refimpl.errors import require_one_of
+from refimpl.grid import Array, Grid, Mask, read_only
 from refimpl.half_space.influence_error import SlopeError
 from refimpl.half_space.model_form import ModelForm, model_form
 from refimpl.model.certificate import Certificate, State
@@ -103,7 +103,7 @@ class Parts:
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Record(Parts):
-    """A `Solution` without its texts: what it stores, and what follows from that."""
+    """A `Solution` without its texts: what it stores, and what follows from that. Arrays are read-only."""
 
     evidence: Evidence
     status: Status
@@ -131,26 +131,27 @@ class Record(Parts):
         changes = {**(changes or {}), **others}
         own = {"evidence": evidence, "status": status, "uncertainty": uncertainty, "warnings": warnings}
         vars(self).update(own, cost=cost, changes=changes, **changes)
+        evidence.state.freeze()
 
     @cached_property
     def surface_lower(self) -> Array:
         """Deformed heights of the lower surface (m)."""
-        return self.evidence.surfaces[0]
+        return read_only(self.evidence.surfaces[0])
 
     @cached_property
     def surface_upper(self) -> Array:
         """Deformed heights of the upper surface (m)."""
-        return self.evidence.surfaces[1]
+        return read_only(self.evidence.surfaces[1])
 
     @cached_property
     def gap(self) -> Array:
         """Deformed gap by Eq. (6) (m)."""
-        return self.state.gap
+        return read_only(self.state.gap)
 
     @cached_property
     def plastic_indentation(self) -> Array:
         """Depth w_p by which the softer body has yielded (m)."""
-        return self.grid.zeros if self.state.indentation is None else self.state.indentation
+        return read_only(self.grid.zeros if self.state.indentation is None else self.state.indentation)
 
     @property
     def contact(self) -> Mask:
@@ -234,8 +235,7 @@ class Record(Parts):
 
         A/A0 has that of A; a number without any part has 0. Raises `InputError` for an unknown name.
         """
+        require_one_of("error", name, UNITS)
         if name == "contact_area_share":
             return self.error("contact_area") / math.prod(self.grid.lengths)
-        if name not in UNITS:
-            raise InputError("error", name, f"one of {', '.join(UNITS)}")
         return math.fsum(self.uncertainty.get(name, {}).values())

@@ -79,7 +79,7 @@ class GaussianRoughness(Surface):
         """The lengths of Eq. (9) (m), ``along`` the lay lx and ``across`` ly."""
         given = self.correlation_length
         lx, ly = given if isinstance(given, tuple) else (given, given)
-        factor = math.sqrt(math.log(10.0) / math.log(1.0 / self.acf_level))
+        factor = math.sqrt(math.log(10.0) / -math.log(self.acf_level))
         return Lay(lx * factor, ly * factor, self.lay)
 
     def autocorrelation(self, x: Array, y: Array | float = 0.0) -> Array:

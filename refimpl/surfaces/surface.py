@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.errors import LEAST, InputError, require_number
+from refimpl.errors import InputError, require_number, require_size
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.arrays import check_domain, checked, interpolation_notes, sampled, sampling_note
 
@@ -238,12 +238,6 @@ def require_seed(seed: object) -> int:
     return int(seed)  # type: ignore[call-overload, no-any-return]  # as above
 
 
-def require_one_of(field: str, value: object, allowed: tuple[str, ...]) -> None:
-    """Raise InputError unless ``value`` is one of these texts."""
-    if not isinstance(value, str) or value not in allowed:
-        raise InputError(field, value, "one of " + ", ".join(allowed))
-
-
 def finite(field: str, value: Any, allowed: str) -> float:
     """``value`` as a float if it is a finite real number (no text, no truth value); else InputError."""
     require_number(field, value, allowed)
@@ -251,8 +245,8 @@ def finite(field: str, value: Any, allowed: str) -> float:
 
 
 def positive(field: str, value: Any, allowed: str) -> float:
-    """``value`` as a float if it is a finite number from ``LEAST`` up; else InputError."""
-    require_number(field, value, f"{allowed}, from {LEAST} up", at_least=LEAST)
+    """``value`` as a float if it is a positive size that arithmetic can bear; else InputError."""
+    require_size(field, value, allowed)
     return float(value)
 
 

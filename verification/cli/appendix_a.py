@@ -13,7 +13,7 @@ from typing import Any
 
 from verification.cli import appendix_tables, half_space
 from verification.cli.options import Options, Parsers, declare, number, numbers, option, subcommand
-from verification.cli.output import columns, emit, refusal
+from verification.cli.output import check_workers, columns, emit, refusal
 
 # A table is of a slope's square, so none of zero; half a period of positions is all, the rest is its mirror.
 MAP_RANGES = {
@@ -135,8 +135,7 @@ def coefficient_map(options: argparse.Namespace) -> int:
     from appendix_a.fem.coefficient_map import check_complete
     from appendix_a.fem.map2d import POSITIONS, SLOPES_DEG, WAVELENGTHS, compute
 
-    if options.jobs < 1:
-        raise refusal("--jobs", options.jobs, "at least one worker process")
+    check_workers("--jobs", options.jobs)
     axes = {
         "slopes-deg": tuple(options.slopes_deg or SLOPES_DEG),
         "wavelengths": tuple(options.wavelengths or WAVELENGTHS),

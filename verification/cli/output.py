@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 WIDTH = 100
 """Columns that tables and texts keep within."""
+MOST_WORKERS = 1024
 PICTURES = (".png", ".svg", ".pdf")
 Selected = TypeVar("Selected")
 
@@ -64,6 +65,13 @@ def check_suffix(option: str, path: Path | None, suffixes: Sequence[str]) -> Non
         *others, last = suffixes
         ends = f"{', '.join(others)} or {last}" if others else last
         raise refusal(option, str(path), f"a file name that ends in {ends}")
+
+
+def check_workers(option: str, count: int) -> None:
+    """Raise InputError unless so many worker processes can be started."""
+    from refimpl.errors import require_number
+
+    require_number(option, count, f"1 to {MOST_WORKERS} worker processes", at_least=1, at_most=MOST_WORKERS)
 
 
 def _one_file(path: Path, other: Path) -> bool:

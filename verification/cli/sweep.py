@@ -14,6 +14,7 @@ from verification.cli.output import (
     StatusLine,
     check_outputs,
     check_suffix,
+    check_workers,
     columns,
     emit,
     plain,
@@ -76,8 +77,7 @@ def run(options: argparse.Namespace) -> int:
     from verification.sweep.store import files_of
     from verification.sweep.study_file import read_study
 
-    if options.workers < 1:
-        raise refusal("--workers", options.workers, "at least one worker process")
+    check_workers("--workers", options.workers)
     if options.parquet is not None:
         export.require_parquet(options.parquet)
     store = options.store or Path(Path(options.study).stem + ".sqlite")

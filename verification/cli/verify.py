@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from verification.cli import contestant, export
 from verification.cli.options import Options, option
-from verification.cli.output import columns, emit, judgement, refusal, select_or_refuse
+from verification.cli.output import check_workers, columns, emit, judgement, refusal, select_or_refuse
 
 if TYPE_CHECKING:
     from verification.framework.runner import Run
@@ -44,8 +44,7 @@ def run(options: argparse.Namespace) -> int:
     from verification.framework import registry, runner
     from verification.framework.case import Tier
 
-    if options.jobs < 1:
-        raise refusal("--jobs", options.jobs, "at least one worker process")
+    check_workers("--jobs", options.jobs)
     if options.export is not None:
         if options.solver or options.exec or options.self_test or options.list:
             raise refusal("--export", str(options.export), "no other action beside it")

@@ -34,11 +34,10 @@ def replacing(path: Path) -> Iterator[Path]:
     if is_stream(path):
         yield path
         return
-    path = Path(os.path.realpath(path))
-    with _temporary(path) as name:
+    with _temporary(path) as (name, target):
         yield Path(name)
-        os.chmod(name, _mode(path))
-        os.replace(name, path)
+        os.chmod(name, _mode(target))
+        os.replace(name, target)
 
 
 def is_stream(path: Path) -> bool:
@@ -51,28 +50,32 @@ def try_out(path: Path) -> None:
     with suppress(FileNotFoundError):
         os.stat(path)  # the temporary file's name is a short one, whatever the length of this one
     if not is_stream(path):
-        with _temporary(Path(os.path.realpath(path))):
+        with _temporary(path):
             pass
 
 
 @contextmanager
-def _temporary(path: Path) -> Iterator[str]:
-    """The name of a new file beside the path, locked while it is written and gone afterwards."""
-    prefix = f".{path.name[:_SHOWN]}."
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=prefix, suffix=path.suffix)
+def _temporary(path: Path) -> Iterator[tuple[str, Path]]:
+    """The name of a new file, and the file that a link leads to, beside which it is.
+
+    It has the suffix of the path that was given, is locked while it is written and gone afterwards.
+    """
+    target = Path(os.path.realpath(path))
+    prefix = f".{target.name[:_SHOWN]}."
+    handle, name = tempfile.mkstemp(dir=target.parent, prefix=prefix, suffix=path.suffix)
     os.close(handle)
     try:
         with FileLock(name):
-            _remove_left(path, prefix)
-            yield name
+            _remove_left(target.parent, prefix, path.suffix)
+            yield name, target
     finally:
         with suppress(FileNotFoundError):  # it is at its place
             os.unlink(name)
 
 
-def _remove_left(path: Path, prefix: str) -> None:
-    """Remove temporary files of the path whose writers are gone: nobody locks them."""
-    for left in path.parent.glob(f"{glob.escape(prefix)}????????{glob.escape(path.suffix)}"):
+def _remove_left(folder: Path, prefix: str, suffix: str) -> None:
+    """Remove temporary files whose writers are gone: nobody locks them."""
+    for left in folder.glob(f"{glob.escape(prefix)}????????{glob.escape(suffix)}"):
         with suppress(OSError), FileLock(left, timeout=0):
             os.unlink(left)
 

@@ -14,10 +14,12 @@ import pytest
 
 import refimpl as rf
 from refimpl.planning import plan
+from refimpl.scene.parameters import with_parameter
 
 STEEL = rf.Material(200e9, 0.3)
 SCENE = rf.read_scene("table1-smooth")
 TOML = rf.scene_to_toml(SCENE)
+OBLONG = replace(SCENE, side=None, size=(1e-3, 2e-3))
 METRES_OF_ROUGHNESS = np.random.default_rng(1).normal(0, 0.5, (8, 8))
 
 
@@ -108,6 +110,21 @@ REFUSED: dict[str, tuple[str, Callable[[], Any]]] = {
     "unknown quantity on a grid": ("quantity", lambda: rf.solve(SCENE, 8, quantity="approach")),
     "empty quantity": ("quantity", lambda: rf.solve(SCENE, accuracy=0.1, quantity="")),
     "method as list": ("method", lambda: rf.solve(SCENE, 8, method=["fft"])),
+    "method as array": ("method", lambda: rf.solve(SCENE, 8, method=np.zeros(9))),
+    "quantity as array": ("quantity", lambda: rf.solve(SCENE, accuracy=0.1, quantity=np.zeros(9))),
+    "error of a list": ("error", lambda: rf.solve(SCENE, 8).error([])),
+    "parameter as list": ("parameter", lambda: with_parameter(SCENE, [], 1.0)),
+    "grid beyond doubles": ("grid", lambda: rf.solve(SCENE, 10**400)),
+    "grid of two beyond doubles": ("grid", lambda: rf.solve(SCENE, (8, 10**400))),
+    "grid of a rectangle beyond doubles": ("grid", lambda: OBLONG.grid(10**400)),
+    "grid as a large double": ("grid", lambda: rf.solve(SCENE, int(1e308))),
+    "two lengths beyond arithmetic": (
+        "correlation_length",
+        lambda: rf.GaussianRoughness(1e-7, (1e-4, 1e308), 1),
+    ),
+    "wavelength beyond arithmetic": ("low_pass", lambda: rf.MeasuredSurface("a.npy", low_pass=1e308)),
+    "turn as array": ("rotate_deg", lambda: rf.MeasuredSurface("a.npy", rotate_deg=np.zeros(9))),
+    "turn by a fraction": ("rotate_deg", lambda: rf.MeasuredSurface("a.npy", rotate_deg=90.5)),
     "start as number": ("start", lambda: rf.solve(SCENE, 8, start=3)),
     "start on a grid as text": ("grid", lambda: rf.solve(SCENE, "16", start=rf.solve(SCENE, 8))),
     "progress as number": ("progress", lambda: rf.solve(SCENE, 8, progress=3)),

@@ -6,6 +6,7 @@ import math
 import re
 import sys
 from dataclasses import replace
+from operator import attrgetter
 from types import SimpleNamespace
 from typing import Any
 
@@ -41,6 +42,17 @@ def test_error_is_the_sum_of_the_parts(rough: rf.Solution) -> None:
     assert all(rough.error(name) >= 0 for name in UNITS)
     with pytest.raises(InputError, match="friction_coefficient"):
         rough.error("mu")
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["pressure", "traction", "gap", "surface_lower", "surface_upper", "plastic_indentation", "excluded",
+     "slopes.tan_x", "slopes.tan_y", "state.displacement_lower", "state.v", "state.plastic"],
+)  # fmt: skip
+def test_arrays_are_read_only(name: str, rough: rf.Solution) -> None:
+    """A solution is its certificate's, and a start that was changed would be none."""
+    with pytest.raises(ValueError, match="read-only"):
+        attrgetter(name)(rough)[0, 0] = 1
 
 
 def test_patches_by_hand() -> None:

@@ -243,8 +243,8 @@ def test_levels_of_the_autocorrelation() -> None:
     """Lengths at another level than 0.1 are those of the same Eq. (9)."""
     grid = Grid((40, 31), (1.0, 0.8))
     paper = GaussianRoughness(1.0, 0.1, 3)
-    for level, factor in ((0.2, 0.836), (1 / math.e, 0.659)):
-        length = 0.1 * math.sqrt(math.log(1 / level) / math.log(10))
+    for level, factor in ((0.2, 0.836), (1 / math.e, 0.659), (5e-324, 17.98)):
+        length = 0.1 * math.sqrt(-math.log(level) / math.log(10))
         assert length == pytest.approx(0.1 * factor, rel=5e-4)
         same = GaussianRoughness(1.0, length, 3, acf_level=level)
         np.testing.assert_allclose(same.sample(grid), paper.sample(grid), rtol=0, atol=1e-12)

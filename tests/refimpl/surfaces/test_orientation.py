@@ -45,10 +45,10 @@ def from_middle(grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> tuple[n
 
 @pytest.mark.parametrize(
     ("replica", "mirror", "rotate", "over"),
-    list(itertools.product((False, True), (None, "x", "y"), (0, 90, 180, 270), (False, True))),
+    list(itertools.product((False, True), (None, "x", "y"), (0, 90.0, 180, 270), (False, True))),
 )
 def test_every_way_up_is_the_function_of_the_turned_place(
-    tmp_path: Path, replica: bool, mirror: str | None, rotate: int, over: bool
+    tmp_path: Path, replica: bool, mirror: str | None, rotate: float, over: bool
 ) -> None:
     """The chain backwards: a place in the domain is turned over, turned back, mirrored, then looked up."""
     centre, offset = (13e-6, 9e-6), (4e-7, -3e-7)

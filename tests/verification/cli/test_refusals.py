@@ -27,6 +27,7 @@ COMMANDS = [
     ("verify --tier nightly", "nightly"),
     ("verify --only none/*", "none/*"),
     ("verify --jobs 0", "--jobs = 0"),
+    ("verify --jobs 99999", "--jobs = 99999: expected 1 to 1024 worker processes"),
     ("verify --json /no/such/folder/results.json", "/no/such/folder"),
     ("verify --json .", "directory"),
     ("verify --json ''", "--json: expected a file's name, or '-' for standard output"),
@@ -51,6 +52,7 @@ COMMANDS = [
     (f"{MAP} --positions 0,0.25 --jobs 1", "--positions"),
     (f"{MAP} --positions 0,0.51", "0 to 0.5 wavelengths"),
     (f"{MAP} --jobs 0", "--jobs"),
+    (f"{MAP} --jobs 99999", "--jobs = 99999"),
     (f"{ELEMENT} --upper-nu 0.3", "--upper-E = None: expected both"),
     (f"{ELEMENT} --upper-nu 0.3 --upper-E 0", "--upper-E = 0.0"),
     (f"{ELEMENT} --upper-E 200", "--upper-nu"),
@@ -64,6 +66,11 @@ COMMANDS = [
     ("identify hertz a.csv --loads '5;8'", "'5;8' is no list of numbers"),
     ("inspect heights.npy", "unit, pixel_size"),
     ("inspect heights.npy --unit furlong --pixel-size 1", "unit = 'furlong'"),
+    (f"inspect heights.npy {PIXELS} --size inf", "size = inf"),
+    (f"inspect heights.npy {PIXELS} --size nan,1e-6", "size = nan"),
+    (f"inspect heights.npy {PIXELS} --high-pass 1e308", "high_pass = 1e+308"),
+    (f"inspect heights.npy {PIXELS} --centre 1e308 --size 1e-6", "centre = 1e+308"),
+    ("inspect heights.npy --unit um --pixel-size 1e308", "pixel_size = 1e+308"),
     ("inspect heights.npy --pixel-size wide", "--pixel-size"),
     (f"inspect heights.npy {PIXELS} --level cone", "level = 'cone'"),
     (f"inspect heights.npy {PIXELS} --size 1", "at most the measured"),
@@ -109,6 +116,7 @@ COMMANDS = [
     ("sweep", "STUDY"),
     ("sweep no-such-study", "study"),
     ("sweep table3 --workers 0", "--workers"),
+    ("sweep table3 --workers 99999", "--workers = 99999"),
     ("sweep table3 --store ''", "--store: expected a file's name"),
     ("sweep table3 --store -", "--store"),
     ("sweep table3 --csv nowhere/t.csv", "--csv"),
@@ -185,12 +193,24 @@ def test_studies_that_no_run_could_pose(vary: str, says: str, folder: Path) -> N
         ("load,mu\n5,0.1\n9,0.1\n", "u_mu"),
         ("load,mu,u_mu\n5,0.1,0.01\n", "two different loads"),
         ("load,mu,u_mu\n5,low,0.01\n9,0.1,0.01\n", "finite number"),
+        ("load,mu,u_mu\n5,0.1,1e300\n9,0.1,0.01\n", "data line 2: u_mu = 1e+300"),
+        ("load,mu,u_mu\n5,0.1,0.01\n9,1e300,0.01\n", "data line 3: mu = 1e+300"),
         ("load,mu,u_mu\n0.005,0.1,0.01\n9,0.1,0.01\n", "kN"),
     ],
 )
 def test_tables_of_measured_friction(text: str, says: str, folder: Path) -> None:
     Path("data.csv").write_text(text)
     refused("identify table1-smooth data.csv --grid 48", says)
+
+
+@pytest.mark.parametrize("command", ["identify hertz", "report --results"])
+def test_a_device_has_no_end(command: str, folder: Path) -> None:
+    refused(f"{command} /dev/zero", "'/dev/zero': expected")
+
+
+def test_a_pipe_is_no_table(folder: Path) -> None:
+    os.mkfifo("data.csv")
+    refused("identify hertz data.csv", "data = 'data.csv': expected a regular file of at most")
 
 
 @pytest.mark.parametrize("text", ["{}", "[1", '{"format": "rough-friction identify 1", "solves": {"a": 1}}'])

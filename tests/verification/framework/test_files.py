@@ -48,14 +48,16 @@ def test_the_next_write_removes_what_a_killed_writer_left(tmp_path: Path) -> Non
 
 
 def test_a_link_keeps_leading_to_the_file_that_is_written(tmp_path: Path) -> None:
-    """/dev/stdout is one."""
-    target, link = tmp_path / "target.json", tmp_path / "link.json"
+    """/dev/stdout is one. Writers that choose a format by the suffix see that of the name given."""
+    target, link = tmp_path / "target.stl", tmp_path / "link.json"
     target.write_text("old")
     link.symlink_to(target)
-    files.write_text("new", link)
+    with files.replacing(link) as temporary:
+        assert temporary.suffix == ".json"
+        temporary.write_text("new")
     assert link.is_symlink()
     assert target.read_text() == "new"
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["link.json", "target.json"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["link.json", "target.stl"]
 
 
 @pytest.mark.parametrize(("umask", "kept"), [(0o022, 0o600), (0o077, 0o664)])
