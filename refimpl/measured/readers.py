@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, size_text
 from refimpl.grid import Array
 from refimpl.measured.instrument_files import (
     CORRUPT,
@@ -32,6 +32,7 @@ from refimpl.measured.text_tables import TextTable, decoded, is_triples, on_grid
 __all__ = ["MAX_BYTES", "MAX_POINTS", "UNITS", "Overrides", "RawHeights", "read"]
 
 _HEAD = 2**16  # bytes that tell text from binary
+_SAME_PITCH = 0.01  # relative difference of two pitches: digits of a given one
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 
 
@@ -46,7 +47,8 @@ def read(
     ``unit`` of the heights (a key of UNITS) and ``pixel_size`` (m) serve files that state none and override
     those that do, with a note. ``.npy`` and text without a header are plain tables: row i at x_i, column j at
     y_j, nan where nothing was measured. Text with a header is an instrument's image: lines along x, the first
-    at the top. Three columns are points x, y, z in ``unit``. All else is read by SurfaceTopography.
+    at the top. Three columns are points x, y, z in ``unit``: another pixel than their pitch is refused, but
+    for x and y in another unit. All else is read by SurfaceTopography.
     Raises InputError.
     """
     _check_size(path)
@@ -134,11 +136,26 @@ def _with_header(path: Path, table: TextTable, given: Overrides) -> RawHeights:
     return read_or_refuse(path, load, corrupt(library))
 
 
+def _check_pitch(path: Path, pitch: tuple[float, float], given: Overrides) -> None:
+    """Raise InputError unless a given pixel is the points' pitch (m), or would be it in another unit.
+
+    Some instruments write x and y in mm and z in um.
+    """
+    if given.pixel_size is None or given.unit is None:
+        return
+    ratios = np.divide(given.pixel_size, pitch) * UNITS[given.unit]
+    if not any(np.allclose(ratios, unit, _SAME_PITCH, 0) for unit in UNITS.values()):
+        own = f"{size_text(pitch)} m (in one of the units)"
+        allowed = f"none, or the pitch of the points in {path.name}, {own}"
+        raise InputError("pixel_size", given.pixel_size, allowed)
+
+
 def _points(path: Path, table: TextTable, given: Overrides) -> RawHeights:
     if given.unit is None:
         allowed = f"one: {path.name} holds points x, y, z and states no unit"
         raise InputError("unit", None, allowed)
     heights, pitch = on_grid(path, table.rows * UNITS[given.unit])
+    _check_pitch(path, pitch, given)
     unit, pixel, notes = given.resolve(path.name, given.unit, pitch)
     if heights.size > MAX_POINTS:
         raise InputError("path", str(path), f"heights on a grid of at most {MAX_POINTS} points")

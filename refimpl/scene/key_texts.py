@@ -87,7 +87,11 @@ SURFACES: dict[str, Texts] = {
     "measured": {
         "path": ("", "the file, relative to the scene's file"),
         "unit": ("", "unit of the heights; overrides the file's, with a note"),
-        "pixel_size": ("m", "edges of a pixel, one number or `[dx, dy]`; overrides the file's, with a note"),
+        "pixel_size": (
+            "m",
+            "edges of a pixel, one number or `[dx, dy]`; overrides the file's, with a note; of points x, y, "
+            "z it only states that x and y have another unit than z",
+        ),
         "channel": ("", "name or number of the channel; not set: the first one of heights"),
         "outliers": (
             "",

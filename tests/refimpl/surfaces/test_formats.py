@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import SurfaceTopography
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, size_text
 from refimpl.grid import Grid
 from refimpl.measured import MeasuredSurface, missing_points
 from refimpl.measured.readers import read
@@ -102,8 +102,9 @@ def test_unit_and_pixel_are_overridden_with_a_note(tmp_path: Path, row: tuple[An
     name, writer, given, *_ = row
     writer(tmp_path / name, MAP)
     stated = read(tmp_path / name, **given)
-    found = read(tmp_path / name, unit="pm", pixel_size=(5e-6, 7e-6))
-    assert found.pixel == (5e-6, 7e-6)
+    pixel = PIXEL if writer is write.write_xyz else (5e-6, 7e-6)  # of points, another unit alone
+    found = read(tmp_path / name, unit="pm", pixel_size=pixel)
+    assert found.pixel == pixel
     size = np.nanmax(np.abs(stated.heights))
     factor = np.nanmax(np.abs(found.heights)) / size
     assert np.log10(factor) == pytest.approx(round(np.log10(factor)), abs=1e-6)
@@ -111,7 +112,8 @@ def test_unit_and_pixel_are_overridden_with_a_note(tmp_path: Path, row: tuple[An
     if not given:
         assert any("the file states" in note and "unit 'pm'" in note for note in found.notes)
     if "pixel_size" not in given:
-        assert any("a pixel of 5e-06 x 7e-06 m is used; the file states" in note for note in found.notes)
+        used = f"a pixel of {size_text(pixel)} m is used; the file states"
+        assert any(used in note for note in found.notes)
 
 
 def test_what_an_array_lacks_is_asked_for(tmp_path: Path) -> None:
@@ -149,8 +151,12 @@ def test_the_pitch_of_points_is_their_own(tmp_path: Path, name: str) -> None:
     write.write_xyz(tmp_path / name, MAP)
     reading = read(tmp_path / name, unit="um")
     np.testing.assert_allclose(reading.pixel, PIXEL, rtol=1e-12)
-    overridden = read(tmp_path / name, unit="um", pixel_size=(1e-6, 1e-6))
-    assert overridden.notes == ("a pixel of 1e-06 x 1e-06 m is used; the file states 2e-06 x 3e-06 m",)
+    in_mm = read(tmp_path / name, unit="um", pixel_size=(2e-3, 3e-3))
+    assert in_mm.notes == ("a pixel of 0.002 x 0.003 m is used; the file states 2e-06 x 3e-06 m",)
+    assert read(tmp_path / name, unit="um", pixel_size=(2.01e-6, 3e-6)).pixel == (2.01e-6, 3e-6)
+    for other in ((1e-6, 1e-6), (2.03e-6, 3e-6), (2e-6, 3e-3)):
+        with pytest.raises(InputError, match=r"pixel_size = .*, 2e-06 x 3e-06 m \(in one of the units\)"):
+            read(tmp_path / name, unit="um", pixel_size=other)
     with pytest.raises(InputError, match="holds points x, y, z and states no unit"):
         read(tmp_path / name)
 
@@ -222,11 +228,11 @@ def test_blank_lines_between_blocks_of_points_are_no_end(tmp_path: Path) -> None
 def test_text_among_the_numbers_is_refused_and_after_them_is_not(tmp_path: Path, name: str) -> None:
     rows = [f"{i} {j} {i * j}" if name == "a.xyz" else " ".join("12345") for i in range(5) for j in range(5)]
     (tmp_path / name).write_text("\n".join([*rows, "end of data"]))
-    whole = read(tmp_path / name, unit="um", pixel_size=PIXEL).heights
+    whole = read(tmp_path / name, unit="um", pixel_size=(1e-6, 1e-6)).heights
     assert whole.size == (25 if name == "a.xyz" else 125)
     (tmp_path / name).write_text("\n".join([*rows[:7], "lost", *rows[7:]]))
     with pytest.raises(InputError, match="after row 7 stands 'lost', then numbers"):
-        read(tmp_path / name, unit="um", pixel_size=PIXEL)
+        read(tmp_path / name, unit="um", pixel_size=(1e-6, 1e-6))
 
 
 def test_a_text_of_two_images_gives_either(tmp_path: Path) -> None:
