@@ -27,7 +27,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import mpmath as mp
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -96,30 +95,3 @@ class SlidingCylinder:
     def pressure_centroid(self) -> float:
         """Centroid of p (m): a beta distribution's mean, centre + a (2 (1 + g)/3 - 1)."""
         return self.centre + self.half_width * (2 * (1 + self.exponent) / 3 - 1)
-
-
-def equation_residual(contact: SlidingCylinder, x: float) -> float:
-    """The integral equation's misfit at ``x`` (m) in the contact, over its largest term, by mpmath
-    quadrature.
-
-    The principal value is taken by pairing x + s with x - s up to the nearer edge; p is written anew from the
-    exponents.
-    """
-    with mp.workdps(25):
-        g = mp.mpf(1) / 2 - mp.atan(mp.mpf(contact.coupling) * contact.beta) / mp.pi
-        a = mp.sqrt(mp.mpf(contact.line_load) * contact.radius / (mp.pi * contact.modulus * g * (1 - g)))
-        shift = -2 * mp.mpf(contact.radius) * contact.coupling * contact.tau / contact.modulus
-        low, high = shift - 2 * a * (1 - g), shift + 2 * a * g
-
-        def p(s: mp.mpf) -> mp.mpf:
-            height = mp.mpf(contact.modulus) / (2 * contact.radius) * mp.sin(mp.pi * g)
-            return height * max(mp.mpf(0), s - low) ** g * max(mp.mpf(0), high - s) ** (1 - g)
-
-        at = mp.mpf(x)
-        near = min(at - low, high - at)
-        paired = mp.quad(lambda s: (p(at - s) - p(at + s)) / s, [0, near / 2, near])
-        rest = [low, at - near] if at - low > near else [at + near, high]
-        principal = paired + mp.quad(lambda s: p(s) / (at - s), rest)
-        shear = mp.pi * contact.coupling * (contact.tau + contact.beta * p(at))
-        wanted = mp.pi * contact.modulus * at / (2 * contact.radius)
-        return float(abs(principal - shear - wanted) / max(abs(principal), abs(shear), abs(wanted)))

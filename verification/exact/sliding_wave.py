@@ -21,7 +21,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-import mpmath as mp
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
@@ -125,27 +124,3 @@ class SlidingWave:
         behind, ahead = np.sin(np.maximum(0.0, psi - low)), np.sin(np.maximum(0.0, high - psi))
         shape = np.maximum(0.0, behind) ** g * np.maximum(0.0, ahead) ** (1 - g) * np.cos(psi - m)
         return np.asarray(2 * self.full_contact_pressure * np.sin(np.pi * g) * shape)
-
-
-def principal_value_residual(contact: SlidingWave, x: float) -> float:
-    """The integral equation's misfit at ``x`` (m) in the contact over its largest term, by quadrature."""
-    with mp.workdps(20):
-        at = mp.pi * mp.mpf(x) / contact.wavelength
-        low, high = (mp.mpf(angle) for angle in contact._angles)
-        g = mp.mpf(1) / 2 - mp.atan(mp.mpf(contact.coupling) * contact.beta) / mp.pi
-        m, star = -g * low - (1 - g) * high, mp.mpf(contact.full_contact_pressure)
-
-        def p(psi: mp.mpf) -> mp.mpf:
-            if not low < psi < high:
-                return mp.mpf(0)
-            edges = mp.sin(psi - low) ** g * mp.sin(high - psi) ** (1 - g)
-            return 2 * star * mp.sin(mp.pi * g) * edges * mp.cos(psi - m)
-
-        near = min(at - low, high - at)
-        paired = mp.quad(lambda s: (p(at - s) - p(at + s)) * mp.cot(s), [0, near / 2, near])
-        rest = [low, at - near] if at - low > near else [at + near, high]
-        principal = paired + mp.quad(lambda psi: p(psi) * mp.cot(at - psi), rest)
-        mean = contact.beta * mp.mpf(contact.mean_pressure) + contact.tau * (high - low) / mp.pi
-        shear = mp.pi * contact.coupling * (contact.tau + contact.beta * p(at) - mean)
-        wanted = mp.pi * star * mp.sin(2 * at)
-        return float(abs(principal - shear - wanted) / max(abs(principal), abs(shear), abs(wanted)))
