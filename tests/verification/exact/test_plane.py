@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import quad
 
 from refimpl.errors import InputError
-from verification.exact import sliding_plane, sliding_wave, westergaard
+from verification.exact import westergaard
 from verification.exact.sliding_plane import SlidingCylinder, dundurs
 from verification.exact.sliding_wave import SlidingWave
 
