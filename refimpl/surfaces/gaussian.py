@@ -31,6 +31,9 @@ from refimpl.surfaces.waves import PeriodicLattice, rotated
 
 RESOLVED = 4.0  # elements per correlation length from which slopes count as resolved
 _REACH = 26.6  # l q of the highest wave: exp(-26.6^2 / 18.4) = 2e-17
+_POINTS = 10  # quadrature points on a panel of half a correlation length
+_MOST_POINTS = 10**8  # quadrature points on the domain: 500 x 500 lengths, 3 to 30 seconds
+_BLOCK = 2**22  # points evaluated at once: 34 MB an array
 _ALLOWED_FLAG = "true or false"
 _ALLOWED_LENGTH = "a positive length in m, or two: along the lay and across it"
 
@@ -173,10 +176,20 @@ class GaussianRoughness(Surface):
             if side < length:
                 least = f"false, or a side of at least one correlation length, {length:.6g} m"
                 raise InputError("normalise", True, least)
-        (x, along), (y, across) = map(_panels, grid.lengths, lengths)
-        z = self._field(x, y, grid)
-        mean = along @ z @ across
-        return math.sqrt(along @ (z - mean) ** 2 @ across)
+        points = math.prod(_POINTS * _panels(*pair) for pair in zip(grid.lengths, lengths, strict=True))
+        if points > _MOST_POINTS:
+            self._refused(math.sqrt(points / _MOST_POINTS), "normalise = true: 500 x 500 lengths")
+        (x, along), (y, across) = map(_quadrature, grid.lengths, lengths)
+        columns = max(1, _BLOCK // len(x))
+        first = second = shift = 0.0
+        for j in range(0, len(y), columns):
+            z, weights = self._field(x, y[j : j + columns], grid), across[j : j + columns]
+            mean = float(along @ z @ weights)
+            if j == 0:
+                shift = mean * len(y) / len(weights)  # near the mean, so that no digits cancel
+            first += mean
+            second += float(along @ (z - shift) ** 2 @ weights)
+        return math.sqrt(second - (first - shift) ** 2)
 
     def detail(self, spacing: float) -> Detail:
         # mean squares of the Laplacian and the gradient of Eq. (9): 32 c^2 and 4 c, c = 2.3 / l^2
@@ -219,9 +232,14 @@ def _lengths(given: object) -> float | tuple[float, float]:
     return positive("correlation_length", given, _ALLOWED_LENGTH)
 
 
-def _panels(side: float, length: float) -> tuple[Array, Array]:
+def _panels(side: float, length: float) -> int:
+    """Number of panels, of at most half a length, along one side."""
+    return math.ceil(2.0 * side / length)
+
+
+def _quadrature(side: float, length: float) -> tuple[Array, Array]:
     """Quadrature points (m) and weights, which add up to 1, along one side."""
-    panels = math.ceil(2.0 * side / length)
-    node, weight = np.polynomial.legendre.leggauss(10)
+    panels = _panels(side, length)
+    node, weight = np.polynomial.legendre.leggauss(_POINTS)
     points = ((np.arange(panels)[:, None] + (node + 1.0) / 2.0) * (side / panels)).ravel()
     return points, np.tile(weight / (2.0 * panels), panels)

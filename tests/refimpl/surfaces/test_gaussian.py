@@ -13,7 +13,7 @@ import pytest
 
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
-from refimpl.surfaces import GaussianRoughness, SurfaceWarning
+from refimpl.surfaces import GaussianRoughness, SurfaceWarning, gaussian
 from refimpl.surfaces.statistics import kurtosis, skewness
 from refimpl.surfaces.white_noise import white_noise
 
@@ -123,6 +123,12 @@ def test_the_shorter_correlation_length_is_what_a_grid_must_resolve(lengths: tup
             0.0,
             "normalise = True: expected false",
         ),
+        (
+            {"correlation_length": SIDE / 600, "normalise": True},
+            GRID,
+            0.0,
+            r"correlation_length = .*: expected at least 3\.22e-06 m .*500 x 500 lengths",
+        ),
         ({}, GRID, 1e7 * LENGTH, "offset = .*: beyond, digits are lost"),
     ],
 )
@@ -132,6 +138,17 @@ def test_what_a_grid_cannot_hold_is_refused(
     surface = GaussianRoughness(**{"rms": 1.0, "correlation_length": LENGTH, "seed": 1} | changes)
     with pytest.raises(InputError, match=refusal):
         surface.heights(grid, (offset, 0.0))
+
+
+@pytest.mark.parametrize("changes", [{}, {"correlation_length": (LENGTH, LENGTH / 3), "lay": 0.4}], ids=str)
+@pytest.mark.parametrize("grid", [GRID, PERIODIC], ids=["free", "periodic"])
+def test_the_rms_of_a_realisation_is_that_of_its_blocks(
+    changes: dict[str, Any], grid: Grid, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    surface = replace(unit(normalise=True), **changes)
+    whole = surface._realised_rms(grid)
+    monkeypatch.setattr(gaussian, "_BLOCK", 1000)
+    assert surface._realised_rms(grid) == pytest.approx(whole, rel=1e-12)
 
 
 @pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
