@@ -31,8 +31,8 @@ from refimpl.surfaces.waves import PeriodicLattice, rotated
 
 RESOLVED = 4.0  # elements per correlation length from which slopes count as resolved
 _REACH = 26.6  # l q of the highest wave: exp(-26.6^2 / 18.4) = 2e-17
-_POINTS = 10  # of quadrature, on a panel of half a correlation length
-_MOST_POINTS = 10**8  # of quadrature on the domain: 500 x 500 lengths, some seconds
+_POINTS = 10  # quadrature points on a panel of half a correlation length
+_MOST_POINTS = 10**8  # quadrature points on the domain: 500 x 500 lengths, 3 to 30 seconds
 _BLOCK = 2**22  # points evaluated at once: 34 MB an array
 _ALLOWED_FLAG = "true or false"
 _ALLOWED_LENGTH = "a positive length in m, or two: along the lay and across it"
