@@ -129,7 +129,7 @@ def test_rows_of_a_sweep(tmp_path: Path) -> None:
     with open_store(tmp_path / "s.sqlite") as store:
         store.add(run, outcomes, 12.25)
     with open_store(tmp_path / "s.sqlite") as store:
-        (row,), (seconds,) = list(store.rows([run])), list(store.seconds([run]))
+        ((row, seconds),) = store.finished([run])
     expected = {"key": run.key, **coordinates, **outcomes}
     assert (row, seconds) == (expected, 12.25)
     (read,) = csv.DictReader(io.StringIO(to_csv([row])))
