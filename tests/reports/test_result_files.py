@@ -84,8 +84,8 @@ PACKED = gzip.compress(json.dumps(DOCUMENT).encode(), mtime=0)
         PACKED[:-9],
         PACKED + b"x",
         PACKED[:40] + b"\xff" + PACKED[41:],
-        gzip.compress(b'{"x": 1'),
-        gzip.compress(b"\xff"),
+        gzip.compress(b'{"x": 1', mtime=0),
+        gzip.compress(b"\xff", mtime=0),
         zlib.compress(b"{}"),
     ],
 )

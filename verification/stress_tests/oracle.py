@@ -11,6 +11,7 @@ Slopes are brought up to date until they stand. tau's active set is that of the 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import mpmath as mp
 import numpy as np
@@ -21,7 +22,7 @@ from refimpl.grid import Array
 from verification.stress_tests import exact_operators as operators
 from verification.stress_tests.exact_operators import DIGITS, Exact
 
-EXCHANGES, SLOPE_UPDATES = 80, 150
+EXCHANGES, SLOPE_UPDATES, MIXED = 80, 150, 5
 SETTLED = mp.mpf(10) ** -20  # relative change of pressure by an update of slopes: below a double's digits
 TIE = mp.mpf(10) ** (6 - DIGITS)  # share of the maximum pressure or gap: signs nearer to zero are ties
 
@@ -79,19 +80,30 @@ class Oracle:
         self.cos, self.sin = cos, sin
         self.flat = (np.full(M**2, mp.mpf(0), dtype=object),) * 2
 
-    def solve(self, pressure: Array, support: NDArray[np.bool_]) -> Exactly:
-        """The exact state that belongs to a returned pressure and to tau's active set, both ``(M, M)``."""
+    def solve(
+        self, pressure: Array, support: NDArray[np.bool_], tangents: tuple[Array, Array] | None = None
+    ) -> Exactly:
+        """The exact state that belongs to a returned pressure and to tau's active set, both ``(M, M)``.
+
+        Slopes are sought from the returned ``tangents`` on, or from those that the pressure leaves on flats.
+        """
         with mp.workdps(DIGITS):
             chi = np.array([mp.mpf(int(s)) for s in support.ravel()], dtype=object)
             f, contact = _exact(pressure), pressure.ravel() > 0
             tan = self._slopes(f, self._traction(f, chi), self.flat)
+            if self.oblique and tangents is not None:
+                tan = _exact(tangents[0]), _exact(tangents[1])
+            history: list[tuple[Exact, Exact]] = []
             for _ in range(SLOPE_UPDATES):
                 last = f
                 f, delta, contact, margin = self._frozen(tan, chi, contact)
                 r = self._traction(f, chi)
-                tan = self._slopes(f, r, tan)
+                new = self._slopes(f, r, tan)
                 if not self.oblique or max(abs(f - last)) <= SETTLED * max(f):
+                    tan = new
                     break
+                history = [*history[-MIXED:], (np.array(new), np.array(new) - np.array(tan))]
+                tan = _mixed(history)
             else:
                 raise NotSettled("slopes of the exact state do not settle")
             cos_x, cos_y = _cos(tan[0]), _cos(tan[1])
@@ -198,6 +210,24 @@ def eliminated(matrix: Exact, right: Exact) -> Exact:
 
 def _cos(tan: Exact) -> Exact:
     return np.array([1 / mp.sqrt(1 + t * t) for t in tan], dtype=object)
+
+
+def _mixed(history: list[tuple[Exact, Exact]]) -> tuple[Exact, Exact]:
+    """The next slopes from the last ones found and their changes: Anderson (1965) mixing.
+
+    Its few shares are doubles: they steer the iteration, and where it ends does not depend on them.
+    """
+    found, changes = zip(*history, strict=True)
+    if len(history) < 2:
+        return tuple(found[-1])
+    steps = [(later - earlier).ravel() for earlier, later in pairwise(changes)]
+    scale = max(max(abs(step)) for step in steps)
+    columns = np.array([(step / scale).astype(float) for step in steps]).T
+    shares = np.linalg.lstsq(columns, (changes[-1].ravel() / scale).astype(float), rcond=None)[0]
+    mixed = found[-1]
+    for share, (earlier, later) in zip(shares, pairwise(found), strict=True):
+        mixed = mixed - (later - earlier) * mp.mpf(float(share))
+    return tuple(mixed)
 
 
 def _exact(values: Array) -> Exact:

@@ -62,7 +62,7 @@ def loads() -> Iterator[Extreme]:
     atoms = replace(pressed(radius=10e-9, rms=None, side=1.25e-9), friction=smooth)
     for load in ATOMIC_LOADS:
         # under a micronewton the oracle itself seeks slopes that do not settle, for 4 s
-        yield state("atoms", f"{load:.0e} N", load, replace(atoms, load=load), "fft", seconds=8.0)
+        yield state("atoms", f"{load:.0e} N", load, replace(atoms, load=load), "fft")
 
 
 def peak(i: int, j: int, height: float = 1e-7) -> Array:
