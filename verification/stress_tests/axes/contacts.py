@@ -61,7 +61,6 @@ def loads() -> Iterator[Extreme]:
     # a tip of 10 nm on 5 x 5 elements of an atom's size, 0.25 nm
     atoms = replace(pressed(radius=10e-9, rms=None, side=1.25e-9), friction=smooth)
     for load in ATOMIC_LOADS:
-        # under a micronewton the oracle itself seeks slopes that do not settle, for 4 s
         yield state("atoms", f"{load:.0e} N", load, replace(atoms, load=load), "fft")
 
 
