@@ -84,7 +84,7 @@ def _result(
     profile: Profile | VaryingProfile,
     further: Sequence[str],
 ) -> Identification:
-    """What follows from a fit and its covariance by source, without a further solve."""
+    """The result of a fit and its covariance by source, without a further solve."""
     covariance = np.asarray(sum(parts.values()))
     values = _values(fitted, profile, further)
     units = np.array([1.0, 1.0, *(values[name].value for name in further)])

@@ -104,7 +104,7 @@ def read_as(
     unit, pixel, overridden = given.resolve(path.name, unit, pixel)
     if given.unit is not None or stated is None:
         stated = UNITS[unit]
-    told = [
+    remarks = [
         f"SurfaceTopography: {first_line(w.message)}" for w in said if issubclass(w.category, UserWarning)
     ]
     upwards = name in UPWARDS
@@ -113,7 +113,7 @@ def read_as(
         np.ascontiguousarray(heights if upwards else heights[:, ::-1]),
         pixel, path.name, f"by SurfaceTopography's {name} reader", unit, ARRAY if upwards else IMAGE,
         str(channel.name), tuple(str(c.name) for c in reader.channels),
-        (*notes, *overridden, *told),
+        (*notes, *overridden, *remarks),
     )  # fmt: skip
 
 

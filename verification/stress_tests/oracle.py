@@ -5,7 +5,9 @@ Arrays stand before scalars in products: an mpf before an array asks for the arr
 At fixed slopes and a fixed active set of tau the problem has one solution (`positive_definite`), so where the
 search for it starts cannot bend the answer: the contact set under test is taken as a first guess, its linear
 equations are solved exactly, and elements are exchanged until every inequality of Eq. (6) holds exactly.
-Slopes are brought up to date until they stand. tau's active set is that of the returned traction.
+Slopes are brought up to date until they stand. tau's active set is that of the returned traction. Where
+friction is strong, slopes may stand in several states: sought from the returned ones on, a state that is
+right is one of these to the last digit, which does not prove it the only one.
 """
 
 from __future__ import annotations

@@ -63,6 +63,8 @@ def test_the_oracle_satisfies_the_contact_conditions_wherever_it_starts() -> Non
     support = np.ones((4, 4), dtype=bool)
     guesses = (np.eye(4), np.ones((4, 4)), np.arange(16.0).reshape(4, 4))
     found = [oracle.solve(guess, support) for guess in guesses]
+    tilted = np.full((4, 4), 0.02), np.linspace(-0.03, 0.03, 16).reshape(4, 4)
+    found.append(oracle.solve(guesses[1], support, tilted))
     for other in found[1:]:
         assert max(abs(found[0].pressure - other.pressure)) < 1e-15 * max(found[0].pressure)
     assert abs(found[0].normal - BALL.load) < mp.mpf(10) ** -15

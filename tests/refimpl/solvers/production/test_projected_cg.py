@@ -209,7 +209,7 @@ def test_penetration_is_relative_to_the_approach(approach: float) -> None:
 
 
 def cut(pressure: list[float], step: list[float], target: float | None) -> tuple[bool, np.ndarray]:
-    """Whether the cut trial has any pressure, and the change that leads to it, with weights of one."""
+    """True if the cut trial has any pressure, and the change that leads to it, with weights of one."""
     before, change = np.array([pressure]), np.array([step])
     return cut_at_zero(before + change, before, change, np.ones_like(before), target), change
 
