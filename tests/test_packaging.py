@@ -47,9 +47,9 @@ def test_every_dependency_states_a_least_version() -> None:
 
 
 EXTRAS_TESTED_ELSEWHERE = {
-    "instrument", "rigorous", "fast", "mutation", "tamaas", "contactmechanics", "aspher", "dev",
+    "instrument", "rigorous", "fast", "docs", "mutation", "tamaas", "contactmechanics", "aspher", "dev",
 }  # fmt: skip
-"""The first three are set up by make beside dev; the others are of studies, which tests do not run."""
+"""The first three are set up by make beside dev; tests run neither the site nor the studies of the others."""
 
 
 def test_what_ci_installs_has_the_extras_that_tests_use() -> None:

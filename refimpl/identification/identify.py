@@ -59,7 +59,12 @@ def identify(
     memory, key : keep solves by a key of scene and settings, so that a stopped fit goes on
     report : called with a line of text before each solve
 
-    Raises `InputError` for input that is out of range, `ArithmeticError` where a solve does not converge.
+    Raises
+    ------
+    InputError
+        input out of range
+    ArithmeticError
+        a solve that does not converge
     """
     rows, tolerances = check_rows(rows), dict(tolerances or {})
     further = _check(scene, loads, tolerances, realisations, fit)

@@ -68,11 +68,16 @@ class Scene:
     plastic : whether pressures end at the hardness of the softer body; None: where they reach it
     size : lengths ``(Lx, Ly)`` of a rectangular domain (m), in place of ``side``
 
+    Raises
+    ------
+    InputError
+        names the field
+
+    Notes
+    -----
     With measured surfaces neither side nor size need be given: the domain is then the largest rectangle that
     all of them cover at the offset, centres on one another. A measured surface on the upper body is turned
     over about the x axis, unless stated otherwise (`refimpl.MeasuredSurface`); arrays are used as given.
-
-    Raises `InputError` naming the field.
     """
 
     upper: Body
