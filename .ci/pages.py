@@ -13,7 +13,9 @@ from verification.cli import parser
 OUT = Path("out/pages")
 PACKAGES = ("refimpl", "appendix_a", *(f"verification/{x}" for x in ("framework", "solver_suite", "sweep")))
 SOURCE = re.compile(r"(?<=\]\()([\w./-]+\.(?:py|sh|cff))(?=\))")
+LAST = "---\nsearch: {boost: 5e-4}\n---\n\n"  # in search results, where titles count 1000 times
 NAMED = re.compile(r"^```(\w+) (\S+)$", flags=re.M)
+PACKAGE = f"{LAST}::: %s\n    options: {{heading_level: 1}}"
 DOCTEST = re.compile(r"^(>>> .*\n?(?:.+\n?)*)", flags=re.M)
 FIELD = re.compile(r"^(\*{0,2}\w+(?:, \w+)*) : (.+)$", flags=re.M)
 
@@ -34,18 +36,18 @@ def pages() -> Iterator[tuple[str, str]]:
     """Yield the name and the text of each page."""
     globs = ("README.md", "CHANGELOG.md", "reports/**/R*.md", "docs/*.md")
     for path in [path for glob in globs for path in Path().glob(glob)]:
-        text = path.read_text(encoding="utf-8")
+        text = (LAST if path.parts[0] == "reports" else "") + path.read_text(encoding="utf-8")
         for link in SOURCE.findall(text):
             name = (path.parent / link).resolve().relative_to(Path().resolve())
-            yield f"{name}.md", f"# {name}\n\n```{name.suffix[1:]}\n{name.read_text(encoding='utf-8')}```\n"
+            shown = f"```{name.suffix[1:]}\n{name.read_text(encoding='utf-8')}```\n"
+            yield f"{name}.md", f"{LAST}# {name}\n\n{shown}"
         text += "\n".join(options(parser())) if path.stem == "command-line" else ""
         yield str(path), NAMED.sub(r'```\1 title="\2"', SOURCE.sub(r"\1.md", text)).replace(".ipynb)", ".md)")
     starts = [path.parent for top in PACKAGES for path in sorted(Path(top).rglob("__init__.py"))]
     packages = {".".join(start.parts): start for start in starts}
     for name, start in packages.items():
-        lines = [f"::: {name}", *(f"::: {name}.{path.stem}" for path in sorted(start.glob("[!_]*.py")))]
-        lines[0] = f"---\nsearch: {{boost: 0.2}}\n---\n\n{lines[0]}\n    options: {{heading_level: 1}}"
-        yield f"api/{name}.md", "\n\n".join(lines)
+        modules = [f"::: {name}.{path.stem}" for path in sorted(start.glob("[!_]*.py"))]
+        yield f"api/{name}.md", "\n\n".join([PACKAGE % name, *modules])
     listed = "".join(f"- [{name}]({name}.md)\n" for name in packages)
     yield "api/README.md", f"# Functions and classes\n\nSI units; fields: shape `(Mx, My)`.\n\n{listed}"
 
@@ -59,8 +61,7 @@ def options(command: argparse.ArgumentParser) -> Iterator[str]:
             below += action.choices.values()
         elif action.help != argparse.SUPPRESS:
             yield f"| `{form._format_action_invocation(action)}` | {form._expand_help(action)} |"
-    for found in below:
-        yield from options(found)
+    yield from (line for found in below for line in options(found))
 
 
 if __name__ == "__main__":
