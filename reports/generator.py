@@ -12,7 +12,7 @@ from reports import agreement, contestant
 from reports.agreement_figure import AGREEMENT
 from reports.catalogue import figures_of
 from reports.chapters import all_chapters, exhibits_of, subjects_of
-from reports.claims import judged, shown
+from reports.claims import judged, of_the_conversion, shown
 from reports.comparison import compared
 from reports.drawing import Figure
 from reports.evidence import Evidence, gathered, groups
@@ -89,6 +89,7 @@ def _own(evidence: Evidence, picture: Any) -> dict[str, Any]:
     return {
         "front": front_page(evidence, claims, numbers),
         "claims": claims,
+        "of_the_conversion": of_the_conversion(),
         "numbers": numbers,
         "scatter": picture(AGREEMENT, agreement.series(agreement.compared(numbers))) if numbers else None,
         "parts": shown(claims, numbers, evidence.cases),

@@ -45,7 +45,7 @@ def test_title_and_summary_name_the_solver() -> None:
     assert "./mine --fast" in heading[0]
     assert "./mine --fast" in summary_of(html).text
     own = render(OURS["quick"], {})
-    assert "<title>Validation report" in own
+    assert "<title>Verification and replication report" in own
     assert "solver under test" not in own
 
 

@@ -54,9 +54,9 @@ COMMANDS = (
      "Print the keys of scene and study files, or write them as a page."),
     (verify, "run the verification cases",
      "Run the verification cases. A case that could not run is never a pass."),
-    (report, "make the validation report",
-     "Make the validation report, one HTML file, from a result file of 'verify' and the\n"
-     "committed results of long cases and studies."),
+    (report, "make the report of verification and replication",
+     "Make the report of verification and replication, one HTML file, from a result file of 'verify' and\n"
+     "the committed results of long cases and studies."),
     (sweep, "solve the runs of a study: realisations x roughness x load x direction x grid",
      "Solve the runs of a study in worker processes, resumably, and export the table."),
     (tradeoff, TRADEOFF, f"Print {TRADEOFF}."),
