@@ -36,6 +36,9 @@ OPTIONS: Options = {
     ),
     "--largest": option("most elements a side that it should be given", metavar="M", type=int),
     "--precision": option("relative residual that it claims (default 1e-8)", metavar="P", type=float),
+    "--strongest": option(
+        "largest strength of coupling, pi |c0| E* beta, that it should be given", metavar="K", type=float
+    ),
     "--timeout": option(
         "seconds for one problem (default 60); a --solver has 5 more", metavar="S", type=float
     ),
@@ -64,7 +67,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "bring your own solver",
         "Run the suite of verification.solver_suite with it, one case after the other whatever --tier\n"
         "and --jobs say: the cases that are within its abilities; the others are named. Of the abilities\n"
-        "that a Python function carries, --able, --largest and --precision replace only what they state.",
+        "that a Python function carries, --able, --largest, --precision and --strongest replace only what\n"
+        "they state.",
     )
     declare(group, WHO | OPTIONS, one_of=tuple(WHO))
 
@@ -180,7 +184,7 @@ def _source(options: argparse.Namespace) -> tuple[str, Source, dict[str, Any]]:
     from verification.solver_suite.isolated import Named
     from verification.solver_suite.protocol import Abilities
 
-    limits = {name: getattr(options, name) for name in ("largest", "precision")}
+    limits = {name: getattr(options, name) for name in ("largest", "precision", "strongest")}
     stated = {name: value for name, value in limits.items() if value is not None}
     if options.able is not None:
         listed = asdict(Abilities.named(options.able))
