@@ -154,14 +154,14 @@ def _judged(
 
 def identity_of(options: argparse.Namespace) -> dict[str, str | None]:
     """Name, version and checksum of the solver."""
-    from verification.adapters import PEERS
+    from verification.adapters import PUBLISHED
     from verification.framework.case import readable
     from verification.solver_suite import identity
 
     if options.exec is not None:
         found = identity.of_command(options.exec)
-    elif options.solver in PEERS:
-        found = identity.of_peer(PEERS[options.solver])
+    elif options.solver in PUBLISHED:
+        found = identity.of_published_code(PUBLISHED[options.solver])
     else:
         found = identity.of_function(options.solver)
     return found | {"name": readable(options.solver or options.exec)}
@@ -175,7 +175,7 @@ def _source(options: argparse.Namespace) -> tuple[str, Source, dict[str, Any]]:
     """Name and source of the solver, and the abilities that are stated here: a program has no other."""
     from dataclasses import asdict, replace
 
-    from verification.adapters import PEERS
+    from verification.adapters import PUBLISHED
     from verification.solver_suite.command import Command
     from verification.solver_suite.isolated import Named
     from verification.solver_suite.protocol import Abilities
@@ -187,6 +187,6 @@ def _source(options: argparse.Namespace) -> tuple[str, Source, dict[str, Any]]:
         stated = {name: able for name, able in listed.items() if name not in limits} | stated
     abilities = replace(Abilities(), **stated)  # refuses what cannot be, before anything is imported
     if options.solver is not None:
-        return options.solver, Named(PEERS.get(options.solver, options.solver), stated).solver, stated
+        return options.solver, Named(PUBLISHED.get(options.solver, options.solver), stated).solver, stated
     command = Command.of(options.exec, abilities, _timeout(options))
     return options.exec, command.solver, asdict(abilities)
