@@ -15,12 +15,12 @@ from typing import NoReturn
 
 from verification.cli import (
     appendix_a,
-    contestant,
     identify,
     inspect,
     keys,
     report,
     solve,
+    suite_run,
     sweep,
     tradeoff,
     verify,
@@ -89,7 +89,7 @@ def parser() -> argparse.ArgumentParser:
         texts = {"help": text, "description": about, "epilog": module.EPILOG}
         made = subcommand(commands, name, module.run, module.OPTIONS, one_of, **texts)
         if module is verify:
-            contestant.add_options(made)
+            suite_run.add_options(made)
     appendix_a.add_parser(commands)
     return top
 

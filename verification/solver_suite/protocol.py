@@ -293,16 +293,16 @@ class Abilities:
         return None
 
 
-Contestant = Callable[[ContactProblem], "Answer | Array"]
+SolverUnderTest = Callable[[ContactProblem], "Answer | Array"]
 """A bare array is an answer that claims success. Optional attributes: ``abilities``, ``version`` (a text)."""
 
 
-def abilities_of(contestant: Contestant) -> Abilities:
+def abilities_of(solver: SolverUnderTest) -> Abilities:
     """Its ``abilities`` attribute, or the defaults: squares of any size, without coupling.
 
     Raises `InputError` when the attribute is no `Abilities`.
     """
-    found = getattr(contestant, "abilities", None)
+    found = getattr(solver, "abilities", None)
     if found is None:
         return Abilities()
     if not isinstance(found, Abilities):
@@ -315,7 +315,7 @@ HIGHEST = 1e50
 EXPECTED = "expected an array of real numbers, or Answer(pressure, converged) with one"
 
 
-def ask(contestant: Contestant, problem: ContactProblem) -> Answer:
+def ask(solver: SolverUnderTest, problem: ContactProblem) -> Answer:
     """Return the claimed answer of a solver under test, checked; its pressures ``(M, M)`` (Pa) are an array.
 
     The solver gets a copy of the problem. Raises `Unsupported` where its abilities do not reach, or where it
@@ -323,10 +323,10 @@ def ask(contestant: Contestant, problem: ContactProblem) -> Answer:
     `BadAnswer` for an answer that cannot be judged or admits another failure, and every exception of the
     solver.
     """
-    lacking = abilities_of(contestant).lacking(problem)
+    lacking = abilities_of(solver).lacking(problem)
     if lacking:
         raise Unsupported(f"the solver does not offer: {lacking}")
-    answer = contestant(replace(problem, gap=problem.gap))
+    answer = solver(replace(problem, gap=problem.gap))
     beside = _numbers(answer) if isinstance(answer, Answer) else {}
     if isinstance(answer, Answer):
         if not isinstance(answer.converged, bool | np.bool_):

@@ -1,4 +1,4 @@
-"""How a contestant is asked, and that nothing but a checked answer counts: every other end fails closed."""
+"""How a solver under test is called, and that only a checked answer counts: every other end fails closed."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def test_an_array_and_an_answer_are_accepted() -> None:
         np.testing.assert_array_equal(ask(lambda problem, a=answer: a, _still()).pressure, FINE)  # type: ignore[misc]
 
 
-def test_a_contestant_cannot_change_the_problem_it_is_judged_by() -> None:
+def test_a_solver_cannot_change_the_problem_it_is_judged_by() -> None:
     def meddling(problem: ContactProblem) -> Answer:
         problem.gap[:] = 0.0
         return Answer(FINE, True)
