@@ -97,20 +97,16 @@ def read_run(path: Path, option: str = "--results") -> Any:
 
 def read_or_refuse(option: str, path: Path) -> Any:
     """Return the document of a result file; raises InputError, naming the option, for no such file."""
-    from refimpl.errors import InputError
-    from reports.result_files import read_result
-    from verification.framework.files import is_stream
+    from refimpl.errors import require_regular
+    from reports.result_files import MOST_BYTES, read_result
 
+    require_regular(option, path, MOST_BYTES)
     try:
-        if is_stream(path) and not os.path.isdir(path):  # it may have no end
-            raise InputError(option, str(path), "a regular file")
         return read_result(path)
     except FileNotFoundError as missing:
         allowed = "a result file; make one with 'rough-friction verify --json FILE'"
-        raise InputError(option, str(path), allowed) from missing
+        raise refusal(option, str(path), allowed) from missing
     except OSError as refused:
-        raise InputError(option, str(path), f"a file that can be read ({refused.strerror})") from refused
-    except InputError:
-        raise
+        raise refusal(option, str(path), f"a file that can be read ({refused.strerror})") from refused
     except (ValueError, RecursionError) as corrupt:  # JSON, UTF-8, or thousands of digits
-        raise InputError(option, str(path), f"JSON ({corrupt})") from corrupt
+        raise refusal(option, str(path), f"JSON ({corrupt})") from corrupt
