@@ -227,6 +227,7 @@ CORRUPTED = {
     "no cases": WHOLE.replace('"cases"', '"kases"'),
     **{f"{key} {value}": json.dumps(RESULTS | {key: value}) for key, value in (
         ("cases", 3), ("cases", ["x"]), ("counts", []), ("provenance", None), ("errata", [1]))},
+    "empty run": json.dumps(sample.results()),
 }  # fmt: skip
 
 
