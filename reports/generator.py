@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -29,10 +29,11 @@ def render(
     committed: Mapping[str, Mapping[str, Any]] | None = None,
     against: object | None = None,
     progress: Callable[[str], None] = lambda _: None,
+    departures: Sequence[str] = (),
 ) -> str:
     """The page of a run, with committed result files by name, and what changed against an older run.
 
-    ``progress`` is called with every case and figure before drawing.
+    ``progress`` is called with every case and figure before drawing. The first page has the ``departures``.
     Raises ResultFileError (a ValueError) for anything but result files.
     """
     evidence = gathered(results, committed or {})
@@ -64,6 +65,7 @@ def render(
         "run": evidence.run,
         "evidence": evidence,
         "provenance": evidence.run["provenance"],
+        "departures": departures,
         "revisions": revisions_of(evidence),
         "solver": evidence.solver,
         "changes": None if against is None else compared(against, results),

@@ -30,6 +30,7 @@ from verification.cli.options import subcommand
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 OUTPUT_REFUSED = (
     errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO,
+    errno.ENXIO, errno.EPIPE,
 )  # fmt: skip
 
 NEGATIVE = re.compile(r"-(\d|\.\d|inf|nan)", re.IGNORECASE)  # how no option begins
