@@ -20,7 +20,7 @@ from functools import cached_property
 from typing import ClassVar, NoReturn
 
 import numpy as np
-from scipy.sparse import csr_array
+import scipy
 
 from refimpl.errors import InputError, require_number, require_size, size_text
 from refimpl.grid import Array, Grid
@@ -129,7 +129,7 @@ class GaussianRoughness(Surface):
                 return self._waves(x, y, grid)
         return self.rms * self._lattice.field(self.seed, x, y, grid.lengths if grid.periodic else None)
 
-    def smoothing(self, x: Array, period: float | None = None) -> tuple[range, csr_array]:
+    def smoothing(self, x: Array, period: float | None = None) -> tuple[range, scipy.sparse.csr_array]:
         """The lattice's nodes and matrix along x (`NoiseLattice.smoothing`)."""
         return self._lattice.smoothing(x, 0, period)
 

@@ -30,7 +30,7 @@ from pathlib import Path
 from typing import Any, ClassVar, NoReturn
 
 import numpy as np
-from scipy.special import j0
+import scipy
 
 from refimpl.errors import InputError, require_number, require_size
 from refimpl.grid import Array, Grid
@@ -206,8 +206,10 @@ class SelfAffineRoughness(Surface):
         q, weight = self._quadrature(spacing)
         power, qh = weight * self._shape(q) * q**2, q * spacing
         slope, curvature = 0.5 * float(power @ q**2), 0.375 * float(power @ q**4)
-        seen = float(power @ (1.0 - j0(2.0 * qh))) / (2.0 * spacing**2)
-        bent = float(power @ (6.0 - 8.0 * j0(qh) + 2.0 * j0(2.0 * qh))) / spacing**4
+        seen = float(power @ (1.0 - scipy.special.j0(2.0 * qh))) / (2.0 * spacing**2)
+        bent = (
+            float(power @ (6.0 - 8.0 * scipy.special.j0(qh) + 2.0 * scipy.special.j0(2.0 * qh))) / spacing**4
+        )
         return 1.0 - math.sqrt(seen / slope), 1.0 - math.sqrt(bent / curvature)
 
     def _quadrature(self, spacing: float) -> tuple[Array, Array]:
