@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from reports import agreement, contestant
+from reports import agreement, solver_under_test
 from reports.agreement_figure import AGREEMENT
 from reports.catalogue import figures_of
 from reports.chapters import all_chapters, exhibits_of, subjects_of
-from reports.claims import judged, shown
+from reports.claims import judged, of_the_conversion, shown
 from reports.comparison import compared
 from reports.drawing import Figure
 from reports.evidence import Evidence, gathered, groups
@@ -29,10 +29,11 @@ def render(
     committed: Mapping[str, Mapping[str, Any]] | None = None,
     against: object | None = None,
     progress: Callable[[str], None] = lambda _: None,
+    departures: Sequence[str] = (),
 ) -> str:
     """The page of a run, with committed result files by name, and what changed against an older run.
 
-    ``progress`` is called with every case and figure before drawing.
+    ``progress`` is called with every case and figure before drawing. The first page has the ``departures``.
     Raises ResultFileError (a ValueError) for anything but result files.
     """
     evidence = gathered(results, committed or {})
@@ -64,6 +65,7 @@ def render(
         "run": evidence.run,
         "evidence": evidence,
         "provenance": evidence.run["provenance"],
+        "departures": departures,
         "revisions": revisions_of(evidence),
         "solver": evidence.solver,
         "changes": None if against is None else compared(against, results),
@@ -89,6 +91,7 @@ def _own(evidence: Evidence, picture: Any) -> dict[str, Any]:
     return {
         "front": front_page(evidence, claims, numbers),
         "claims": claims,
+        "of_the_conversion": of_the_conversion(),
         "numbers": numbers,
         "scatter": picture(AGREEMENT, agreement.series(agreement.compared(numbers))) if numbers else None,
         "parts": shown(claims, numbers, evidence.cases),
@@ -144,6 +147,6 @@ def _text(value: Any) -> str:
 def rerun(case: Case, evidence: Evidence) -> str:
     """The command that runs this case alone, with the solver that it was run with."""
     if evidence.solver is not None and case["origin"] is None:
-        return contestant.rerun(evidence.run["provenance"]["command"], case["id"])
+        return solver_under_test.rerun(evidence.run["provenance"]["command"], case["id"])
     tier = " --tier full" if case["tier"] == "full" else ""
     return f"rough-friction verify{tier} --only {shlex.quote(case['id'])}"

@@ -105,6 +105,8 @@ def check(results: object) -> Mapping[str, Any]:
     _require(results["provenance"], PROVENANCE, "the provenance")
     if "contestant" in results:  # only where somebody else's solver was run
         _require(results["contestant"], SOLVER, "contestant")
+    if not results["cases"]:
+        raise ResultFileError("it has no cases")
     for number, erratum in enumerate(results["errata"]):
         _require(erratum, ERRATUM, f"erratum {number}")
     for number, case in enumerate(results["cases"]):

@@ -13,7 +13,9 @@ def run(arguments: Sequence[str] | None = None) -> int:
 
     Until `verification.cli.main` takes over, an interrupt ends the process as the system does. Where it is
     ignored, as in a shell's background job, it stays so. Messages to a closed standard error are lost.
+    Pictures go to files, whatever ``MPLBACKEND`` says.
     """
+    os.environ["MPLBACKEND"] = "agg"
     if sys.stderr is None:  # `2>&-`; a file opened later must not become descriptor 2 of child processes
         sys.stderr = os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
         os.set_inheritable(sys.stderr.fileno(), True)

@@ -6,6 +6,8 @@ import math
 import time
 from dataclasses import dataclass
 
+import psutil
+
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Grid
 
@@ -14,7 +16,8 @@ _GROWTH = 1.3  # seconds over those of the same work an element: iterations grow
 
 @dataclass(frozen=True)
 class Limits:
-    """``max_grid`` elements along the longer side, ``max_seconds`` in all, ``max_memory`` of a grid (bytes).
+    """``max_grid`` elements along the longer side, ``max_seconds`` in all, ``max_memory`` of the process (bytes):
+    estimated arrays of a grid beside what is resident before they are made.
 
     Raises `InputError` for a limit that is not positive.
     """
@@ -55,15 +58,16 @@ class Allowance:
         return seconds * ratio * math.log(max(grid.elements, 2)) / math.log(max(elements, 2)) * _GROWTH
 
     def check(self, grid: Grid, memory: float) -> None:
-        """Raise `InputError` for a grid that exceeds a limit."""
+        """Raise `InputError` for a grid that exceeds a limit; ``memory``: of its arrays (bytes)."""
         limits, size = self._limits, max(grid.shape)
         if limits.max_grid is not None and size > limits.max_grid:
             raise InputError("grid", size, f"at most max_grid = {limits.max_grid} elements a side")
-        if limits.max_memory is not None and memory > limits.max_memory:
-            allowed = (
-                f"a grid whose estimated {memory / 1e9:.3g} GB are at most {limits.max_memory / 1e9:.3g} GB"
-            )
-            raise InputError("grid", size, allowed)
+        if limits.max_memory is not None:
+            resident = psutil.Process().memory_info().rss
+            if memory + resident > limits.max_memory:
+                arrays, process, most = (b / 1e9 for b in (memory, resident, limits.max_memory))
+                allowed = f"a grid whose estimated {arrays:.3g} GB, beside {process:.3g} GB in use, "
+                raise InputError("grid", size, allowed + f"are at most {most:.3g} GB")
         if limits.max_seconds is not None and self._last is not None:
             needed, spent = self.expected_seconds(grid), time.perf_counter() - self._began
             if spent + needed > limits.max_seconds:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from refimpl.accuracy.refinement import Quantity, uncertainty
+from refimpl.accuracy.refinement import Quantity
 from refimpl.driver.limits import Limits
 from refimpl.driver.on_grid import Progress, initial_guess, solve_on_grid
 from refimpl.driver.options import Options
@@ -55,7 +55,7 @@ def solve(
     coupled, tilted : request or exclude what shear does to the gap, and to the slopes of the common surface;
         None lets the scene decide
     max_grid, max_seconds, max_memory : with ``accuracy``: the largest number of elements along a side,
-        seconds in all, bytes of a grid; beyond them the status is `ACCURACY_NOT_REACHED`, with
+        seconds in all, bytes of the whole process; beyond them the status is `ACCURACY_NOT_REACHED`, with
         the finest grid within them. An interrupt (KeyboardInterrupt) has the last finished grid's solution as
         its argument
     plastic : True ends pressures at the hardness of the softer body, False never does; None takes the
@@ -102,4 +102,4 @@ def _solved(options: Options, progress: Progress | None) -> Solution:
     if start is not None:
         guess = initial_guess(start.problem, start.pressure, start.clearance, start.approach)
     solved = solve_on_grid(plan, discretiser, options.residual_tolerance, progress, guess)
-    return assemble(solved, uncertainty([solved.features]), discretiser.notes)
+    return assemble(solved)

@@ -10,19 +10,21 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, require_regular
 from refimpl.identification.forward import response_from_dict
 from refimpl.scene.scene import Scene
 from refimpl.scene.scene_file import scene_to_dict
+from reports.result_files import MOST_BYTES
 from verification.cli.output import files_of
 from verification.framework.files import to_json, write_text
 from verification.sweep.run import code_digest, file_digest
+from verification.sweep.store import checksum, damaged_row
 
-FORMAT = "rough-friction identify 1"
+FORMAT = "rough-friction identify 2"
 
 
 class SolveStore(UserDict[str, Mapping[str, Any]]):
-    """Responses by key; the file is rewritten in one step after each solve.
+    """Responses by key, each with its checksum; the file is rewritten in one step after each solve.
 
     Raises InputError for a file that is none of these, or is damaged.
     """
@@ -33,25 +35,28 @@ class SolveStore(UserDict[str, Mapping[str, Any]]):
 
     def __setitem__(self, key: str, value: Mapping[str, Any]) -> None:
         super().__setitem__(key, json.loads(json.dumps(value)))
-        write_text(to_json({"format": FORMAT, "solves": self.data}), self._path)
+        solves = {k: {"response": v, "checksum": checksum([k, v])} for k, v in self.data.items()}
+        write_text(to_json({"format": FORMAT, "solves": solves}), self._path)
 
 
 def _read(path: Path) -> dict[str, Any]:
     allowed = "a store of 'identify', or a new file"
+    require_regular("store", path, MOST_BYTES)
     try:
         document = json.loads(path.read_text(encoding="utf-8"))
         if not isinstance(document, dict) or document.get("format") != FORMAT:
-            raise InputError("store", str(path), allowed)
-        solves: dict[str, Any] = document["solves"]
-        for stored in solves.values():
-            response_from_dict(stored)
+            raise InputError("store", str(path), f"{allowed}, of the format {FORMAT!r}")
+        for key, row in document["solves"].items():
+            if checksum([key, row["response"]]) != row["checksum"]:
+                raise damaged_row(path, key)
+            response_from_dict(row["response"])
+        return {key: row["response"] for key, row in document["solves"].items()}
     except InputError:
         raise
     except OSError as refused:
         raise InputError("store", str(path), f"a file that can be read ({refused.strerror})") from refused
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as damaged:
         raise InputError("store", str(path), f"{allowed}: this one is damaged") from damaged
-    return solves
 
 
 def key(scene: Scene, settings: Mapping[str, Any]) -> str:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from datetime import UTC, datetime
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from verification.cli.options import Options, option
-from verification.cli.output import StatusLine, check_outputs, columns, emit, refusal
+from verification.cli.output import StatusLine, check_outputs, columns, emit, refusal, wrapped
 from verification.cli.pdf import PAPERS, compacts, printed
 
 EPILOG = """examples:
@@ -31,10 +32,13 @@ OPTIONS: Options = {
 
 def run(options: argparse.Namespace) -> int:
     """Make the report and print its path; the exit status is about that, not about the verdicts in it."""
+    from reports.departures import departures
+    from reports.evidence import gathered
     from reports.generator import render
     from reports.result_files import name_of, result_paths
     from reports.results import CaseDataError, ResultFileError
     from verification.framework.files import write_text
+    from verification.framework.provenance import is_known
 
     results = read_run(options.results)
     against = None if options.against is None else read_run(options.against, "--against")
@@ -54,8 +58,10 @@ def run(options: argparse.Namespace) -> int:
     if not (nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)):
         raise refusal("--output", str(options.output), "a folder that can be written to")
     try:
+        evidence = gathered(results, committed)
+        said = departures(evidence, registered(), is_known, datetime.now(UTC))
         with StatusLine() as line:
-            page = render(results, committed, against, line.show)
+            page = render(results, committed, against, line.show, said)
     except ResultFileError as alien:  # data that no figure can show
         if isinstance(alien, CaseDataError) and alien.origin is None:
             raise refusal("--results", str(options.results), f"a result file ({alien})") from alien
@@ -71,9 +77,24 @@ def run(options: argparse.Namespace) -> int:
         if not compacts():
             sys.stderr.write("note: pikepdf is not installed (extra 'pdf'): the PDF is twice as large\n")
     rows = [[status, str(number)] for status, number in results["counts"].items()]
-    document = {"report": str(path), "counts": results["counts"]}
-    emit(document, options.json, "\n".join([columns(rows, indent=""), *map(str, map(Path.resolve, written))]))
+    document = {"report": str(path), "counts": results["counts"], "departures": said}
+    notes = [wrapped(text, "other than the code: ") for text in said]
+    paths = [str(path.resolve()) for path in written]
+    emit(document, options.json, "\n".join([columns(rows, indent=""), *notes, *paths]))
     return 0
+
+
+def registered() -> dict[str, dict[str, Any]]:
+    """Claim, metric, tolerance and tier of this version's cases, and of its suite for contact solvers."""
+    from verification.framework.registry import load
+    from verification.solver_suite import convergence, suite
+
+    checks = (*suite.thorough(), *convergence.CASES)
+    claims = [(check, check.description, "") for check in checks]
+    return {
+        case.id: {"claim": claim, "metric": case.metric.value, "tolerance": case.tolerance, "tier": tier}
+        for case, claim, tier in (*claims, *((case, case.claim, case.tier.value) for case in load()))
+    }
 
 
 def read_run(path: Path, option: str = "--results") -> Any:
@@ -97,20 +118,16 @@ def read_run(path: Path, option: str = "--results") -> Any:
 
 def read_or_refuse(option: str, path: Path) -> Any:
     """Return the document of a result file; raises InputError, naming the option, for no such file."""
-    from refimpl.errors import InputError
-    from reports.result_files import read_result
-    from verification.framework.files import is_stream
+    from refimpl.errors import require_regular
+    from reports.result_files import MOST_BYTES, read_result
 
+    require_regular(option, path, MOST_BYTES)
     try:
-        if is_stream(path) and not os.path.isdir(path):  # it may have no end
-            raise InputError(option, str(path), "a regular file")
         return read_result(path)
     except FileNotFoundError as missing:
         allowed = "a result file; make one with 'rough-friction verify --json FILE'"
-        raise InputError(option, str(path), allowed) from missing
+        raise refusal(option, str(path), allowed) from missing
     except OSError as refused:
-        raise InputError(option, str(path), f"a file that can be read ({refused.strerror})") from refused
-    except InputError:
-        raise
+        raise refusal(option, str(path), f"a file that can be read ({refused.strerror})") from refused
     except (ValueError, RecursionError) as corrupt:  # JSON, UTF-8, or thousands of digits
-        raise InputError(option, str(path), f"JSON ({corrupt})") from corrupt
+        raise refusal(option, str(path), f"JSON ({corrupt})") from corrupt

@@ -80,7 +80,7 @@ OPTIONS: Options = {
     ),
     "--max-grid": option("with --accuracy: at most N elements along the longer side", metavar="N", type=int),
     "--max-seconds": option("with --accuracy: at most so many seconds in all", metavar="S", type=float),
-    "--max-memory": option("with --accuracy: at most so many GB for a grid", metavar="GB", type=gigabytes),
+    "--max-memory": option("with --accuracy: at most so many GB in all", metavar="GB", type=gigabytes),
     "--accuracy": option("refine until the error bar is this share of mu", metavar="A", type=float),
     "--quantity": option(
         f"what --accuracy is about: {', '.join(ACCURATE)} (default mu; without friction, A)",

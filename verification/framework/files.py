@@ -6,6 +6,7 @@ import glob
 import json
 import os
 import re
+import shutil
 import stat
 import sys
 import tempfile
@@ -26,18 +27,28 @@ def replacing(path: Path) -> Iterator[Path]:
     """A temporary path beside `path`, of the same suffix, that takes its place when the block ends well.
 
     The file appears in one step; after an error the old file, if any, is still there. What a killed process
-    has left of an earlier attempt is removed. What is no regular
-    file, a device or a pipe, is written to and never replaced; nor is a link, but the file that it leads to.
+    has left of an earlier attempt is removed. What is no regular file, a device or a pipe, is never replaced:
+    the finished file is copied to it. Nor is a link replaced, but the file that it leads to.
     A new file has the mode that the umask leaves, another keeps its own.
-    Raises OSError where the directory cannot be written to.
+    Raises OSError where the directory cannot be written to, or nobody reads the pipe.
     """
     if is_stream(path):
-        yield path
+        with tempfile.TemporaryDirectory() as folder:
+            yield (whole := Path(folder, f"whole{path.suffix}"))
+            with whole.open("rb") as source, open(path, "wb", opener=_open_now) as stream:
+                shutil.copyfileobj(source, stream)
         return
     with _temporary(path) as (name, target):
         yield Path(name)
         os.chmod(name, _mode(target))
         os.replace(name, target)
+
+
+def _open_now(path: str, flags: int) -> int:
+    """Open a stream, but raise OSError where that would wait for somebody who reads it."""
+    handle = os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
+    os.set_blocking(handle, True)
+    return handle
 
 
 def is_stream(path: Path) -> bool:

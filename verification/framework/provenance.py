@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 import os
 import platform
+import re
 import shlex
 import subprocess
 import sys
@@ -40,6 +41,17 @@ def revision() -> dict[str, str | bool | None]:
         "commit": _git(ROOT, "rev-parse", "HEAD"),
         "dirty": None if changes is None else bool(changes),
     }
+
+
+def is_known(commit: str) -> bool:
+    """Return whether the checkout has the commit; True where that cannot be found out.
+
+    An installed package has no history, and a shallow clone not all of it.
+    """
+    if not _is_checkout() or _git(ROOT, "rev-parse", "--is-shallow-repository") != "false":
+        return True
+    named = re.fullmatch("[0-9a-f]{7,64}", commit)  # no option of git's
+    return bool(named) and _git(ROOT, "cat-file", "-e", f"{commit}^{{commit}}") is not None
 
 
 def machine() -> dict[str, str | int | None]:

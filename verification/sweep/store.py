@@ -92,9 +92,14 @@ def _checked(row: Sequence[Any], path: Path) -> Row:
     *values, stored = row
     found = dict(zip(_ALL, row, strict=True))
     if checksum(values) != stored or _key(found["inputs"]) != found["key"]:
-        allowed = f"rows as they were written; that of key {str(found['key'])[:40]!r} is damaged"
-        raise InputError("store", str(path), allowed)
+        raise damaged_row(path, found["key"])
     return found
+
+
+def damaged_row(path: Path, key: object) -> InputError:
+    """Return the refusal of a row whose checksum is another one than that of its values."""
+    allowed = f"rows as they were written; that of key {str(key)[:40]!r} is damaged"
+    return InputError("store", str(path), allowed)
 
 
 def checksum(values: Sequence[Any]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import time
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -62,14 +63,16 @@ GRID = rf.Grid((10, 20), (1e-3, 2e-3))
 @pytest.mark.parametrize(
     ("limits", "refusal"),
     [
-        (Limits(max_grid=20, max_memory=2.5e9, max_seconds=1e-9), None),
+        (Limits(max_grid=20, max_memory=2.6e9, max_seconds=1e-9), None),
         (Limits(max_grid=19), "grid = 20: .*max_grid = 19"),
-        (Limits(max_memory=2.49e9), r"estimated 2.5 GB are at most 2.49 GB"),
+        (Limits(max_memory=2.59e9), r"estimated 2.5 GB, beside 0.1 GB in use, are at most 2.59 GB"),
     ],
 )
-def test_the_longer_side_and_the_memory_count_and_no_seconds_before_any_grid(
-    limits: Limits, refusal: str | None
+def test_the_longer_side_and_the_whole_process_count_and_no_seconds_before_any_grid(
+    limits: Limits, refusal: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    in_use = SimpleNamespace(memory_info=lambda: SimpleNamespace(rss=0.1e9))
+    monkeypatch.setattr("psutil.Process", lambda: in_use)
     if refusal is None:
         Allowance(limits).check(GRID, memory=2.5e9)
         return

@@ -22,7 +22,7 @@ from refimpl.identification.design import Proposal
 from refimpl.identification.laws import Law
 from refimpl.measured.inspection import PARAMETERS
 from tests.refimpl.surfaces.instrument_writers import MAP, write_plu, write_txt
-from tests.verification.cli.commands import answer, shown
+from tests.verification.cli.commands import answer, refused, shown
 from verification.cli import identify, identify_store, inspect, plot_surface
 from verification.cli.plot_curves import _fit
 
@@ -75,6 +75,11 @@ def test_a_stopped_fit_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     whole, resumed = answer(FIT), answer(f"{FIT} --store store.json")
     assert resumed["tau"] == whole["tau"]
     assert resumed["solves"] == whole["solves"] - 5
+    document = json.loads(Path("store.json").read_text())
+    some = list(document["solves"].values())[7]["response"]
+    some["mu"] *= 1 + 1e-12
+    Path("store.json").write_text(json.dumps(document))
+    refused(f"{FIT} --store store.json", "rows as they were written; that of key")
 
 
 def test_solves_are_kept_by_the_contents_of_measured_files() -> None:

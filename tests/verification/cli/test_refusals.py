@@ -203,17 +203,15 @@ def test_tables_of_measured_friction(text: str, says: str, folder: Path) -> None
     refused("identify table1-smooth data.csv --grid 48", says)
 
 
-@pytest.mark.parametrize("command", ["identify hertz", "report --results"])
-def test_a_device_has_no_end(command: str, folder: Path) -> None:
-    refused(f"{command} /dev/zero", "'/dev/zero': expected")
+@pytest.mark.parametrize("command", ["identify hertz", "identify hertz data.csv --store", "report --results"])
+@pytest.mark.parametrize("file", ["/dev/full", "pipe"])
+def test_a_device_or_a_pipe_has_no_end(command: str, file: str, folder: Path) -> None:
+    Path("data.csv").write_text("load,mu,u_mu\n5,0.4,0.01\n11,0.3,0.01\n")
+    os.mkfifo("pipe")
+    refused(f"{command} {file}", f"= '{file}': expected a regular file of at most")
 
 
-def test_a_pipe_is_no_table(folder: Path) -> None:
-    os.mkfifo("data.csv")
-    refused("identify hertz data.csv", "data = 'data.csv': expected a regular file of at most")
-
-
-@pytest.mark.parametrize("text", ["{}", "[1", '{"format": "rough-friction identify 1", "solves": {"a": 1}}'])
+@pytest.mark.parametrize("text", ["{}", "[1", '{"format": "rough-friction identify 2", "solves": {"a": 1}}'])
 def test_stores_of_fits(text: str, folder: Path) -> None:
     Path("data.csv").write_text("load,mu,u_mu\n5,0.4,0.01\n11,0.3,0.01\n")
     Path("store.json").write_text(text)
@@ -229,6 +227,7 @@ CORRUPTED = {
     "no cases": WHOLE.replace('"cases"', '"kases"'),
     **{f"{key} {value}": json.dumps(RESULTS | {key: value}) for key, value in (
         ("cases", 3), ("cases", ["x"]), ("counts", []), ("provenance", None), ("errata", [1]))},
+    "empty run": json.dumps(sample.results()),
 }  # fmt: skip
 
 

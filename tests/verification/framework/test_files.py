@@ -60,6 +60,21 @@ def test_a_link_keeps_leading_to_the_file_that_is_written(tmp_path: Path) -> Non
     assert sorted(path.name for path in tmp_path.iterdir()) == ["link.json", "target.stl"]
 
 
+def test_a_pipe_without_a_reader_is_an_error_and_with_one_gets_the_whole_file(tmp_path: Path) -> None:
+    """Writers of pictures and archives go back in their file, which a pipe does not let them."""
+    pipe = tmp_path / "pipe.npz"
+    os.mkfifo(pipe)
+    with pytest.raises(OSError, match="No such device or address"):
+        files.write_text("lost", pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    with files.replacing(pipe) as temporary, temporary.open("wb") as file:
+        file.write(b"?part")
+        file.seek(0)
+        file.write(b"!")
+    assert os.read(reader, 100) == b"!part"
+    os.close(reader)
+
+
 @pytest.mark.parametrize(("umask", "kept"), [(0o022, 0o600), (0o077, 0o664)])
 def test_a_new_file_has_the_mode_of_the_umask_and_a_replaced_one_its_own(
     tmp_path: Path, umask: int, kept: int
