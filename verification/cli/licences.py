@@ -1,0 +1,87 @@
+"""``python -m verification.cli.licences`` writes the table of the pinned packages' licences."""
+
+from __future__ import annotations
+
+import re
+import sys
+from importlib.metadata import Distribution, distribution, distributions
+
+from packaging.requirements import Requirement
+
+from verification.framework.provenance import DISTRIBUTION, ROOT
+
+HEAD = ("Package", "Version", "Licence, as its metadata state it", "Comes with")
+_CLASSIFIER = re.compile(r"License :: (?:OSI Approved :: )?(.+)")
+_LENGTH = 60  # characters of a licence's text where only that is given
+
+
+def pinned() -> dict[str, str]:
+    """Version of each package of ``constraints.txt`` by its normalised name."""
+    lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    pairs = (line.split("==") for line in lines if "==" in line)
+    return {normalised(name): version for name, version in pairs}
+
+
+def normalised(name: str) -> str:
+    """Return a package's name as indexes compare it.
+
+    >>> normalised("ast_serialize"), normalised("Jinja2")
+    ('ast-serialize', 'jinja2')
+    """
+    return re.sub("[-_.]+", "-", name).lower()
+
+
+def licence(package: Distribution) -> str:
+    """Return the licence expression, or the classifiers, or the first line of the licence."""
+    stated = package.metadata
+    classified = [found[1] for one in stated.get_all("Classifier") or [] if (found := _CLASSIFIER.match(one))]
+    text = (stated.get("License") or "").strip("# =\n").split("\n")[0].strip()
+    return str(stated.get("License-Expression") or ", ".join(classified) or text[:_LENGTH] or "not stated")
+
+
+def brought_by(extra: str, among: dict[str, Distribution]) -> set[str]:
+    """Names of the packages that come with an extra; "" is the installation without any."""
+    found: set[str] = set()
+    waiting = [(DISTRIBUTION, extra)]
+    seen = set(waiting)
+    while waiting:
+        name, wanted = waiting.pop()
+        for line in among[name].requires or () if name in among else ():
+            need = Requirement(line)
+            if need.marker is not None and not need.marker.evaluate({"extra": wanted}):
+                continue
+            found.add(normalised(need.name))
+            new = {(normalised(need.name), one) for one in ("", *need.extras)} - seen
+            waiting, seen = [*waiting, *new], seen | new
+    return found - {DISTRIBUTION}
+
+
+def rows() -> list[tuple[str, str, str, str]]:
+    """Rows of the table; raises PackageNotFoundError for a pinned package that is not installed."""
+    among = {normalised(one.metadata["Name"]): one for one in distributions()}
+    extras = among[DISTRIBUTION].metadata.get_all("Provides-Extra") or []
+    base = brought_by("", among)
+    parts = {extra: brought_by(extra, among) - base for extra in extras if extra != "dev"}
+    parts["dev"] = brought_by("dev", among) - base.union(*parts.values())
+    parts = {"every installation": base, **parts}
+    return [
+        (
+            name,
+            version,
+            licence(distribution(name)),
+            ", ".join(p for p in parts if name in parts[p]) or "set-up",
+        )
+        for name, version in sorted(pinned().items())
+    ]
+
+
+def main() -> None:
+    """Write the table in the place of that of ``docs/licences.md``."""
+    page = ROOT / "docs" / "licences.md"
+    text = page.read_text(encoding="utf-8").partition("\n| ")[0]
+    table = [f"| {' | '.join(row)} |" for row in (HEAD, ("---",) * len(HEAD), *rows())]
+    page.write_text("\n".join([text, *table, ""]), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
