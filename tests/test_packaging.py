@@ -61,11 +61,10 @@ def test_what_ci_installs_has_the_extras_that_tests_use() -> None:
 
 
 def test_the_table_of_licences_is_that_of_the_pinned_packages() -> None:
-    page = (ROOT / "docs/licences.md").read_text(encoding="utf-8")
-    table = [line.strip("| ").split(" | ") for line in page.splitlines() if line.startswith("| ")][2:]
-    assert {name: version for name, version, *_ in table} == licences.pinned()
+    table = licences.table()
+    assert {name: version for name, version, *_ in table.values()} == licences.pinned()
     installed = {licences.normalised(one.metadata["Name"]): one for one in distributions()}
-    for name, version, licence, by in table:
+    for name, version, licence, by in table.values():
         if name in installed and installed[name].version == version:
             assert licence == licences.licence(installed[name])
         if "GPL" in licence:

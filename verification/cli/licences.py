@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import re
 import sys
-from importlib.metadata import Distribution, distribution, distributions
+from collections.abc import Mapping, Sequence
+from importlib.metadata import Distribution, distributions
 
 from packaging.requirements import Requirement
 
 from verification.framework.provenance import DISTRIBUTION, ROOT
 
+PAGE = ROOT / "docs" / "licences.md"
 HEAD = ("Package", "Version", "Licence, as its metadata state it", "Comes with")
 _CLASSIFIER = re.compile(r"License :: (?:OSI Approved :: )?(.+)")
 _LENGTH = 60  # characters of a licence's text where only that is given
@@ -56,8 +58,8 @@ def brought_by(extra: str, among: dict[str, Distribution]) -> set[str]:
     return found - {DISTRIBUTION}
 
 
-def rows() -> list[tuple[str, str, str, str]]:
-    """Rows of the table; raises PackageNotFoundError for a pinned package that is not installed."""
+def rows(before: Mapping[str, Sequence[str]]) -> list[Sequence[str]]:
+    """Rows of the table; that of a package that is not installed stays as it was ``before``."""
     among = {normalised(one.metadata["Name"]): one for one in distributions()}
     extras = among[DISTRIBUTION].metadata.get_all("Provides-Extra") or []
     base = brought_by("", among)
@@ -65,22 +67,25 @@ def rows() -> list[tuple[str, str, str, str]]:
     parts["dev"] = brought_by("dev", among) - base.union(*parts.values())
     parts = {"every installation": base, **parts}
     return [
-        (
-            name,
-            version,
-            licence(distribution(name)),
-            ", ".join(p for p in parts if name in parts[p]) or "set-up",
-        )
+        (name, version, licence(among[name]), ", ".join(p for p in parts if name in parts[p]) or "set-up")
+        if name in among
+        else before[name]
         for name, version in sorted(pinned().items())
     ]
 
 
+def table() -> dict[str, Sequence[str]]:
+    """Rows of the page's table by name, without its head."""
+    lines = PAGE.read_text(encoding="utf-8").splitlines()
+    cells = [line.strip("| ").split(" | ") for line in lines if line.startswith("| ")]
+    return {row[0]: row for row in cells[2:]}
+
+
 def main() -> None:
-    """Write the table in the place of that of ``docs/licences.md``."""
-    page = ROOT / "docs" / "licences.md"
-    text = page.read_text(encoding="utf-8").partition("\n| ")[0]
-    table = [f"| {' | '.join(row)} |" for row in (HEAD, ("---",) * len(HEAD), *rows())]
-    page.write_text("\n".join([text, *table, ""]), encoding="utf-8")
+    """Write the table in the place of that of the page."""
+    text = PAGE.read_text(encoding="utf-8").partition("\n| ")[0]
+    written = [f"| {' | '.join(row)} |" for row in (HEAD, ("---",) * len(HEAD), *rows(table()))]
+    PAGE.write_text("\n".join([text, "", *written, ""]), encoding="utf-8")
 
 
 if __name__ == "__main__":
