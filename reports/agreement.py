@@ -1,7 +1,7 @@
 """Every number that the paper prints and we compute: both, the difference E, and its uncertainty u.
 
 In terms of ASME V&V 20, E is the comparison error of a replication; no experiment enters. u, at 95 %, holds
-the sampling of two ensembles and the rounding of the print.
+the sampling of two ensembles and the rounding of the printed number. |E| > u is a discrepancy.
 """
 
 from __future__ import annotations
@@ -56,10 +56,10 @@ class Number:
         return self.computed / self.printed
 
 
-TABLE3 = (  # case, quantity, factor to the unit, unit, half a unit of the last digit
-    ("table3-mu", "μ, Table 3", 1.0, "", 0.0005),
-    ("table3-area", "A, Table 3", 1e6, "mm²", 0.0005),
-    ("table3-peak", "p_max, Table 3", 1e-9, "GPa", 0.005),
+TABLE3 = (  # case, quantity, factor to the unit, unit; each is printed in tenths of its unit
+    ("table3-mu", "μ, Table 3", 1.0, ""),
+    ("table3-area", "A, Table 3", 1e6, "mm²"),
+    ("table3-peak", "p_max, Table 3", 1e-9, "GPa"),
 )
 FINEST = 512  # elements per side of the paper's fine mesh
 
@@ -70,11 +70,11 @@ SINGLE = (  # part, quantity, label, unit, printed, half a unit, case, key, fact
     ("Fig. 4", "rms slope", "0.084 µm", "deg", 0.125, 5e-4, "reproduction/fig4-slopes", "rms of a component (deg)#0", 1.0),  # noqa: E501
     ("Fig. 4", "rms slope", "1.68 µm", "deg", 2.5, 5e-3, "reproduction/fig4-slopes", "rms of a component (deg)#1", 1.0),  # noqa: E501
     ("Fig. 4", "largest slope", "1.68 µm, mean of the largest", "deg", 6.5, 0.05, "reproduction/largest-slope", "largest gradient (deg)", 1.0),  # noqa: E501
-    ("Fig. 8", "lowest μ, Eq. (11)", "1.68 µm, 70 N", "", 0.1, 0.005, "reproduction/eq11", "mu#2", 1.0),
+    ("Fig. 8", "lowest μ, Eq. (11)", "1.68 µm, 70 N", "", 0.1, 0.05, "reproduction/eq11", "mu#2", 1.0),
     ("Fig. 8", "critical σ_e", "14 N", "µm", 0.5, 0.05, "reproduction/fig8-threshold", "critical sigma_e (um)#0", 1.0),  # noqa: E501
     ("Fig. 8", "critical σ_e", "42 N", "µm", 0.5, 0.05, "reproduction/fig8-threshold", "critical sigma_e (um)#1", 1.0),  # noqa: E501
     ("Fig. 8", "critical σ_e", "70 N", "µm", 0.5, 0.05, "reproduction/fig8-threshold", "critical sigma_e (um)#2", 1.0),  # noqa: E501
-    ("Fig. 8", "ψ(0.5 µm), Eq. (12)", "ε = 3.15 µm as printed", "", 1.0, 0.1, "reproduction/fig8-threshold", "psi at 0.5 um as printed", 1.0),  # noqa: E501
+    ("Fig. 8", "ψ(0.5 µm), Eq. (12)", "ε = 3.15 µm as printed", "", 1.0, 0.5, "reproduction/fig8-threshold", "psi at 0.5 um as printed", 1.0),  # noqa: E501
     *(
         ("Section 8: scatter", quantity, f"{rms} µm", "%", printed, 0.05, f"reproduction/{case}", f"{key}#{k}", 100.0)  # noqa: E501
         for quantity, printed, case, key in (
@@ -85,15 +85,16 @@ SINGLE = (  # part, quantity, label, unit, printed, half a unit, case, key, fact
         for k, rms in enumerate(("0.504", "1.008", "1.680"))
     ),
 )  # fmt: skip
-SURFACES = 75  # realisations behind a scatter, ours; its relative 95 % half width is 2 / sqrt(2 (n - 1))
+# Realisations behind a scatter, in the paper and here; its relative 95 % half width is 2 / sqrt(2 (n - 1)).
+SURFACES = 75
 
 
 def numbers(cases: Cases) -> list[Number]:
     """Return the printed numbers that the cases hold, in the paper's order of parts."""
     found = [*_single(cases)]
-    for name, quantity, factor, unit, rounding in TABLE3:
+    for name, quantity, factor, unit in TABLE3:
         try:
-            found += _table3(cases[f"reproduction/{name}"]["data"], quantity, factor, unit, rounding)
+            found += _table3(cases[f"reproduction/{name}"]["data"], quantity, factor, unit)
         except OTHER_SHAPE:
             continue
     return [n for n in found if n.printed > 0 and math.isfinite(n.computed) and n.computed > 0]
@@ -103,14 +104,13 @@ def _single(cases: Cases) -> Iterator[Number]:
     for part, quantity, label, unit, printed, rounding, case, key, factor in SINGLE:
         value = number(cases[case], key) if case in cases else None
         if value is not None:
-            share = 2 / math.sqrt(2 * (SURFACES - 1)) if quantity.startswith("scatter") else 0.0
+            sampled = quantity.startswith("scatter")
             computed = value * factor
-            yield Number(part, quantity, label, unit, printed, computed, share * computed, rounding)
+            half = computed * 2 / math.sqrt(2 * (SURFACES - 1)) if sampled else 0.0
+            yield Number(part, quantity, label, unit, printed, computed, half, rounding, sampled)
 
 
-def _table3(
-    data: Mapping[str, Any], quantity: str, factor: float, unit: str, rounding: float
-) -> list[Number]:
+def _table3(data: Mapping[str, Any], quantity: str, factor: float, unit: str) -> list[Number]:
     names = ("sigma_e (um)", "mesh", "printed", "ours", "half width 95 %")
     rows = zip(*(data[name] for name in names), strict=True)
     return [
@@ -122,11 +122,20 @@ def _table3(
             factor * printed,
             factor * ours,
             factor * half,
-            rounding,
+            _half_digit(factor * printed),
             sampled=sigma > 0,
         )
         for sigma, mesh, printed, ours, half in rows
     ]
+
+
+def _half_digit(value: float) -> float:
+    """Half a unit of Table 3's last digit: printed are tenths, with two decimals below 10, else one.
+
+    >>> _half_digit(0.164), _half_digit(1.91)
+    (0.0005, 0.005)
+    """
+    return 0.0005 if value < 1.0 else 0.005
 
 
 def compared(found: Iterable[Number]) -> list[Number]:
@@ -147,16 +156,29 @@ def by_quantity(found: Iterable[Number]) -> dict[str, list[Number]]:
     return groups
 
 
-def bias_and_scatter(group: Sequence[Number]) -> tuple[float, float | None]:
-    """Mean and standard deviation of ln(computed / printed); no deviation of one number.
+def ratio_and_scatter(group: Sequence[Number]) -> tuple[float, float | None]:
+    """Geometric mean and geometric standard deviation of computed / printed; no deviation of one number.
 
-    >>> one, e = (Number("", "", "", "", 1.0, value, 0.0, 0.0) for value in (1.0, math.e))
-    >>> bias, scatter = bias_and_scatter([one, e])
-    >>> round(bias, 3), round(scatter, 3)
-    (0.5, 0.707)
+    >>> ratio_and_scatter([Number("", "", "", "", 1.0, value, 0.0, 0.0) for value in (2.0, 8.0)])
+    (4.0, 2.665...)
     """
     logs = np.log([n.ratio for n in group])
-    return float(np.mean(logs)), float(np.std(logs, ddof=1)) if len(group) > 1 else None
+    scatter = math.exp(np.std(logs, ddof=1)) if len(group) > 1 else None
+    return float(np.round(math.exp(np.mean(logs)), 12)), scatter
+
+
+def as_cases(found: Iterable[Number]) -> dict[str, dict[str, Any]]:
+    """"numbers/QUANTITY" of findings, in the shape of cases: how many numbers, and how many beyond u."""
+    return {
+        f"numbers/{quantity}": {
+            "data": {
+                "numbers": len(group),
+                "beyond u": sum(not n.within for n in group),
+                "largest difference": max(abs(n.difference) / n.printed for n in group),
+            }
+        }
+        for quantity, group in by_quantity(found).items()
+    }
 
 
 def series(found: Sequence[Number]) -> dict[str, list[Any]]:

@@ -10,7 +10,7 @@ from fnmatch import fnmatchcase
 from importlib import resources
 from typing import Any
 
-from reports.agreement import Number
+from reports.agreement import Number, as_cases, numbers
 from reports.findings import by_claim, filled
 from reports.results import Case, worst
 
@@ -21,10 +21,11 @@ VERDICTS = (
     "erratum proposed",
     "confirmed with conditions",
     "confirmed",
+    "by construction",
     "definition",
     "schematic",
 )
-"""From the least to the most favourable; the last two judge nothing."""
+"""From the least to the most favourable; the last three judge nothing."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +79,12 @@ def parts() -> list[Part]:
     return [Part(**entry) for entry in entries("part")]
 
 
+def of_the_conversion() -> frozenset[str]:
+    """Errata that may be faults of the text's conversion from print, by equation."""
+    text = resources.files("reports").joinpath("paper.toml").read_text(encoding="utf-8")
+    return frozenset(tomllib.loads(text)["conversion"])
+
+
 def longest(cases: Iterable[Case]) -> list[Case]:
     """Return the cases but for quick ones that have a long one (``-full``) that passed."""
     known = list(cases)
@@ -88,21 +95,22 @@ def longest(cases: Iterable[Case]) -> list[Case]:
 def judged(cases: Iterable[Case], errata: Iterable[Mapping[str, Any]]) -> list[Judged]:
     """Return every claim with its evidence; a long case that passed stands for the quick one of its name."""
     known = longest(cases)
-    numbers = by_claim(known)
+    found = by_claim(known)
+    found |= as_cases(numbers(found))
     corrections = {erratum["equation"]: erratum for erratum in errata}
-    return [_judged(claim, known, numbers, corrections) for claim in paper()]
+    return [_judged(claim, known, found, corrections) for claim in paper()]
 
 
 def _judged(
     claim: Claim,
     known: Sequence[Case],
-    numbers: Mapping[str, Case],
+    by_name: Mapping[str, Case],
     corrections: Mapping[str, Mapping[str, Any]],
 ) -> Judged:
     found = [c for c in known if any(fnmatchcase(c["id"], pattern) for pattern in claim.evidence)]
     said = [c for c in found if recorded(c) is not None]
     first = note(said[0]) if said else ""
-    finding = filled(claim.finding, numbers) if claim.finding else first
+    finding = filled(claim.finding, by_name) if claim.finding else first
     return Judged(
         claim,
         verdict(claim, found),
@@ -117,7 +125,7 @@ def verdict(claim: Claim, cases: Sequence[Case]) -> str:
     passed."""
     if claim.evidence and (not cases or worst(list(cases)) != "pass"):
         return NOT_ESTABLISHED
-    if claim.own or claim.verdict in VERDICTS[-2:]:
+    if claim.own or claim.verdict in VERDICTS[-3:]:
         return claim.verdict
     said = [v for v in map(recorded, cases) if v is not None]
     return min((claim.verdict, *said), key=VERDICTS.index)

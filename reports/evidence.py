@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from reports.contestant import solver
 from reports.results import FORMAT, STATUSES, Case, check
+from reports.solver_under_test import solver
 
 OWN = "This project's own cases, from committed runs: no evidence about the solver under test"
 

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from reports.agreement import Number, bias_and_scatter, by_quantity, fine
-from reports.claims import VERDICTS, Judged
+from reports.agreement import Number, by_quantity, fine, ratio_and_scatter
+from reports.claims import VERDICTS, Judged, of_the_conversion
 from reports.evidence import Evidence
 from reports.results import Case
 from reports.text import QUANTITIES, number, unit_of
@@ -27,11 +27,12 @@ class FrontPage:
     verdicts: Mapping[str, Sequence[Judged]]
     table3: Sequence[Number]
     beyond: int
-    beyond_sampling: int
-    largest_difference: float
-    """Largest difference from print of those beyond u (%)."""
+    worst: Sequence[Number]
+    """The number farthest from the printed one of each of the three worst quantities, of those beyond u."""
     hertz: Sequence[str]
     quantities: Sequence[tuple[str, int, str, str, int]]
+    conversion: int
+    """Errata that may be faults of the text's conversion."""
     trust: Sequence[str]
 
     @property
@@ -57,13 +58,22 @@ def front_page(evidence: Evidence, claims: Sequence[Judged], numbers: Sequence[N
         verdicts={v: [c for c in claims if c.verdict == v] for v in VERDICTS},
         table3=table3,
         beyond=sum(not n.within for n in table3),
-        beyond_sampling=sum(abs(n.difference) > math.sqrt(2) * n.half_width for n in table3),
-        largest_difference=100
-        * max((abs(n.difference) / n.printed for n in table3 if not n.within), default=0.0),
+        worst=_worst(numbers),
         hertz=[said for said in map(_hertz, evidence.cases) if said],
         quantities=[_quantity(name, group) for name, group in by_quantity(numbers).items()],
+        conversion=sum(erratum["equation"] in of_the_conversion() for erratum in evidence.errata),
         trust=[*_coverage(evidence.studies), *_trust(evidence.studies)],
     )
+
+
+def _worst(numbers: Sequence[Number], count: int = 3) -> list[Number]:
+    """Of the quantities with a number beyond u the worst, each by its largest ratio to the printed number."""
+
+    def distance(n: Number) -> float:
+        return abs(math.log(n.ratio))
+
+    beyond = [[n for n in group if not n.within] for group in by_quantity(numbers).values()]
+    return sorted((max(group, key=distance) for group in beyond if group), key=distance, reverse=True)[:count]
 
 
 def _hertz(case: Case) -> str:
@@ -77,12 +87,12 @@ def _hertz(case: Case) -> str:
 
 
 def _quantity(name: str, group: Sequence[Number]) -> tuple[str, int, str, str, int]:
-    bias, scatter = bias_and_scatter(group)
+    mean, scatter = ratio_and_scatter(group)
     return (
         name,
         len(group),
-        f"{100 * bias:+.1f} %",
-        "" if scatter is None else f"{100 * scatter:.1f} %",
+        f"{mean:.3g}" if mean >= 2 else f"{mean:.3f}",
+        "" if scatter is None else f"{scatter:.3f}",
         sum(n.within for n in group),
     )
 
@@ -101,7 +111,7 @@ def _coverage(studies: Mapping[str, Any]) -> list[str]:
             covered = " and ".join(f"{100 * f['covered']:.0f} %" for f in found)
             longer = " and ".join(number(f["median_bar_over_error"], 2) for f in found)
             said.append(f"{QUANTITIES[name]} in {covered} ({longer} times the error)")
-    samples = "95 % error bars asked to 1 % cover far finer grids, on two samples of random scenes"
+    samples = "95 % error bars at an accuracy of 1 % hold far finer solutions, on two samples of scenes"
     return [f"{samples}: {'; '.join(said)}"] if said else []
 
 

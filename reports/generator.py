@@ -8,11 +8,11 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from reports import agreement, contestant
+from reports import agreement, solver_under_test
 from reports.agreement_figure import AGREEMENT
 from reports.catalogue import figures_of
 from reports.chapters import all_chapters, exhibits_of, subjects_of
-from reports.claims import judged, shown
+from reports.claims import judged, of_the_conversion, shown
 from reports.comparison import compared
 from reports.drawing import Figure
 from reports.evidence import Evidence, gathered, groups
@@ -88,6 +88,7 @@ def _own(evidence: Evidence, picture: Any) -> dict[str, Any]:
     return {
         "front": front_page(evidence, claims, numbers),
         "claims": claims,
+        "of_the_conversion": of_the_conversion(),
         "numbers": numbers,
         "scatter": picture(AGREEMENT, agreement.series(agreement.compared(numbers))) if numbers else None,
         "parts": shown(claims, numbers, evidence.cases),
@@ -143,6 +144,6 @@ def _text(value: Any) -> str:
 def rerun(case: Case, evidence: Evidence) -> str:
     """The command that runs this case alone, with the solver that it was run with."""
     if evidence.solver is not None and case["origin"] is None:
-        return contestant.rerun(evidence.run["provenance"]["command"], case["id"])
+        return solver_under_test.rerun(evidence.run["provenance"]["command"], case["id"])
     tier = " --tier full" if case["tier"] == "full" else ""
     return f"rough-friction verify{tier} --only {shlex.quote(case['id'])}"

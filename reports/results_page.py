@@ -1,6 +1,6 @@
 """``python -m reports.results_page``: write `reports/RESULTS.md`, the page of numbers, from the result files.
 
-The page is for readers of the repository. The validation report (`make report`) holds every case and figure.
+The page is for readers of the repository. The report (`make report`) holds every case and figure.
 """
 
 from __future__ import annotations

@@ -166,6 +166,13 @@ def test_the_plain_reference_is_one_page() -> None:
     assert sum(bool(line.strip()) for line in lines) <= 200
 
 
+def test_importing_refimpl_loads_no_package_of_scipy() -> None:
+    """SciPy loads each of its packages at its first use; all take twice our own code's time."""
+    code = "import sys, scipy, refimpl; print(*(f'scipy.{m}' in sys.modules for m in scipy.__all__))"
+    done = subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, capture_output=True, text=True)
+    assert set(done.stdout.split()) == {"False"}
+
+
 JUDGES = ("refimpl.model.certificate", "refimpl.bounds.proven_bounds", "refimpl.solution.limits")
 
 

@@ -1,6 +1,6 @@
-"""The language of code, docstrings and messages: patterns of ``language.toml`` that no reader should meet.
+"""The language of code, docstrings, messages and names: what of ``language.toml`` no reader should meet.
 
-An exception stands in ``EXCEPTIONS`` with its reason; one that matches nothing any more is a failure.
+An exception stands in ``EXCEPTIONS`` or ``KEPT`` with its reason; one that matches nothing any more fails.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from pathlib import Path
 from tests.layers import ROOT
 
 PACKAGES = ("refimpl", "appendix_a", "verification", "reports")
-PATTERNS = tomllib.loads((ROOT / "tests/language.toml").read_text(encoding="utf-8"))["pattern"]
+LANGUAGE = tomllib.loads((ROOT / "tests/language.toml").read_text(encoding="utf-8"))
+PATTERNS, WORDS = LANGUAGE["pattern"], LANGUAGE["names"]
 FILES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
 
 VERDICT = "verdict in recorded results"
@@ -38,6 +39,53 @@ EXCEPTIONS: dict[tuple[str, str], str] = {
     ("verification/reproduction/fig6.py", "summits"): SUMMITS,
 }
 """Reasons, by file and matched text."""
+
+KEPT = {
+    "verification/contestants": "former name of verification.solver_suite, for one release",
+    "obliqueness": "former name of Slopes.cosine_product, for one release",
+    "reports/studies/extremes.py": "named after the committed result that it shows",
+    "extreme_scene": "a state at an end of its axis",
+    "Extreme": "a state at an end of its axis",
+    "run_state(extreme)": "a state at an end of its axis",
+    "summits": SUMMITS,
+    "gaussian_summits": SUMMITS,
+    "summit_rms": SUMMITS,
+    "summit_density": SUMMITS,
+    "summit_radius": SUMMITS,
+}
+"""Reasons of names."""
+
+
+def names(path: Path) -> Iterator[str]:
+    """Folders and file of a path; its classes, fields, functions but those of tests, and their parameters."""
+    relative = path.relative_to(ROOT)
+    yield from map(str, [*relative.parents, relative])
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.FunctionDef) and not node.name.startswith("test_"):
+            yield node.name
+            parameters = [] if node.name.startswith("_") else [*node.args.args, *node.args.kwonlyargs]
+            yield from (f"{node.name}({parameter.arg})" for parameter in parameters)
+        elif isinstance(node, ast.ClassDef):
+            fields = [part.target for part in node.body if isinstance(part, ast.AnnAssign)]
+            yield from [node.name, *(field.id for field in fields if isinstance(field, ast.Name))]
+
+
+def replaced_words(name: str) -> list[str]:
+    """Words of the last part of a name that have another word in ``language.toml``.
+
+    >>> replaced_words("refimpl/TrapsOf_twins.py"), replaced_words("solve(bed)"), replaced_words("trapezoid")
+    (['trap', 'twin'], ['bed'], [])
+    """
+    last = re.split(r"[/(]", name.removesuffix(".py"))[-1]
+    words = [word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", last)]
+    return [known for word in words for known in WORDS if known in (word, word.removesuffix("s"))]
+
+
+def test_names_have_the_fields_words() -> None:
+    files = [*FILES, *(ROOT / "tests").rglob("*.py")]
+    matches = {name: replaced_words(name) for path in files for name in names(path) if replaced_words(name)}
+    assert {name: words for name, words in matches.items() if name not in KEPT} == {}
+    assert set(KEPT) <= set(matches)  # each is needed
 
 
 def texts(source: str) -> Iterator[tuple[int, str]]:

@@ -251,6 +251,18 @@ def test_solutions() -> None:
         assert same or callable(one), name
 
 
+def test_a_solution_computes_what_is_read_and_stores_all() -> None:
+    """A solve leaves error bars and warnings open; a pickle has them."""
+    solution = rf.solve(rf.read_scene("table1-rough"), 32)
+    open_yet = {"features", "neglected", "slope_error"}
+    assert not open_yet & vars(solution.evidence).keys()
+    assert solution.contact_area > 0
+    assert not open_yet & vars(solution.evidence).keys()
+    stored = vars(pickle.loads(pickle.dumps(solution)))
+    assert repr(stored["uncertainty"]) == repr(solution.uncertainty)
+    assert stored["warnings"] == solution.warnings
+
+
 def test_a_changed_solution_keeps_the_rest() -> None:
     """Changes stay through further ones; names that are none are refused, and so is assignment."""
     solution = rf.solve(rf.read_scene("hertz"), 8)

@@ -15,7 +15,7 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy import optimize, special
+import scipy
 
 from refimpl.grid import Array
 
@@ -76,7 +76,7 @@ class Estimate(NamedTuple):
         distance, deviation = abs(found - self.value), self.half_width / _TWO_SIDED
         if not distance < 3 * deviation:
             return distance + _ONE_SIDED * deviation
-        return deviation * math.sqrt(special.chndtrix(0.95, 1.0, (distance / deviation) ** 2))
+        return deviation * math.sqrt(scipy.special.chndtrix(0.95, 1.0, (distance / deviation) ** 2))
 
 
 def fit_line(values: Array, weights: Array, prior: Prior, bias: Bias | None = None) -> Estimate:
@@ -106,20 +106,20 @@ def fit_line(values: Array, weights: Array, prior: Prior, bias: Bias | None = No
 
 def _bound(shares: Array, centres: Array, scales: Array, freedom: float) -> float:
     """The bound that a mixture of Student distributions exceeds, in either direction, with 5 %."""
-    widest = float(np.max(np.abs(centres)) + np.max(scales) * special.stdtrit(freedom, 0.975))
+    widest = float(np.max(np.abs(centres)) + np.max(scales) * scipy.special.stdtrit(freedom, 0.975))
     if len(shares) == 1:
         return widest
 
     either_way = np.array([centres, -centres])
 
     def beyond(share: float) -> float:
-        tails = special.stdtr(freedom, (either_way - share * widest) / scales)
+        tails = scipy.special.stdtr(freedom, (either_way - share * widest) / scales)
         return float((tails @ shares).sum()) - 0.05
 
     if not beyond(1.0) < 0:
         return widest
     # in a dimensionless share, as the root is sought to an absolute tolerance
-    return widest * float(optimize.brentq(beyond, 0.0, 1.0, xtol=1e-6, rtol=1e-4))
+    return widest * float(scipy.optimize.brentq(beyond, 0.0, 1.0, xtol=1e-6, rtol=1e-4))
 
 
 @cache

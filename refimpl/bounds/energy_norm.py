@@ -38,7 +38,7 @@ import math
 from functools import cache
 
 import numpy as np
-from scipy.special import erfc
+import scipy
 
 from refimpl.grid import Array, Grid, Mask
 from refimpl.kernels import normal_integral
@@ -83,7 +83,7 @@ def smallest_symbol(aspect: float) -> float:
 def _alternating(t: Array) -> Array:
     """``S(pi, t) = sum_j (-1)^j B_j(t) = sqrt(pi)/t (1 - 2 sum_m (-1)^m erfc((m + 1/2) t))``."""
     signs = np.where(_ODD % 4 == 1, 1.0, -1.0)
-    found: Array = math.sqrt(math.pi) / t * (1 - 2 * erfc(0.5 * np.outer(t, _ODD)) @ signs)
+    found: Array = math.sqrt(math.pi) / t * (1 - 2 * scipy.special.erfc(0.5 * np.outer(t, _ODD)) @ signs)
     return found
 
 

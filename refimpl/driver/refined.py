@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from refimpl.accuracy.grid_features import GridFeatures
@@ -17,7 +16,6 @@ from refimpl.accuracy.refinement import (
     reason_unreachable,
     refine_until,
     relative_bound,
-    uncertainty,
 )
 from refimpl.driver.limits import Allowance
 from refimpl.driver.on_grid import Progress, initial_guess, solve_on_grid
@@ -55,24 +53,23 @@ def refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Pr
         )
     except KeyboardInterrupt as interrupt:
         if grids.last is not None:
-            interrupt.args = (_interrupted(grids.last, total_cost(grids.costs), discretiser.notes),)
+            interrupt.args = (_interrupted(grids.last, total_cost(grids.costs)),)
         raise
     solved, cost = grids.solved(), total_cost(grids.costs)
     if not ended.results[-1].touching:
-        return assemble(solved, uncertainty([ended.results[-1]]), discretiser.notes, cost=cost)
+        return assemble(solved, cost=cost)
     shortfall = None
     if ended.refusal:
         bound = relative_bound(ended.results, quantity)
         reached = f"known to {bound:.2g}, not" if math.isfinite(bound) else "not bounded, let alone"
         shortfall = Notice(f"{quantity} is {reached} to {options.accuracy:.2g}: {ended.refusal}")
-    bars = uncertainty(ended.results)
-    return assemble(solved, bars, discretiser.notes, shortfall=shortfall, cost=cost)
+    return assemble(solved, grids=ended.results, shortfall=shortfall, cost=cost)
 
 
-def _interrupted(solved: Evidence, cost: Cost, notes: Sequence[str]) -> Solution:
+def _interrupted(solved: Evidence, cost: Cost) -> Solution:
     """The last finished grid's solution of a refinement that was interrupted."""
     line = Notice("interrupted: the finest grid that was finished")
-    return assemble(solved, uncertainty([solved.features]), notes, shortfall=line, cost=cost)
+    return assemble(solved, shortfall=line, cost=cost)
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from refimpl.accuracy.refinement import Quantity, uncertainty
+from refimpl.accuracy.refinement import Quantity
 from refimpl.driver.limits import Limits
 from refimpl.driver.on_grid import Progress, initial_guess, solve_on_grid
 from refimpl.driver.options import Options
@@ -99,4 +99,4 @@ def _solved(options: Options, progress: Progress | None) -> Solution:
     if start is not None:
         guess = initial_guess(start.problem, start.pressure, start.clearance, start.approach)
     solved = solve_on_grid(plan, discretiser, options.residual_tolerance, progress, guess)
-    return assemble(solved, uncertainty([solved.features]), discretiser.notes)
+    return assemble(solved)

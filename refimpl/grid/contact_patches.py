@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from refimpl.grid.fields import Array, Mask
 
@@ -30,11 +28,13 @@ def patch_labels(contact: Mask, *, periodic: bool = False) -> NDArray[np.intp]:
     >>> patch_labels(np.array([[True, False, True]])).tolist()
     [[1, 0, 2]]
     """
-    labels, count = ndimage.label(contact, np.ones((3, 3)))
+    labels, count = scipy.ndimage.label(contact, np.ones((3, 3)))
     if periodic:
         pairs = np.concatenate([_across(labels), _across(labels.T)], axis=1)
-        touching = coo_array((np.ones(pairs.shape[1]), (pairs[0], pairs[1])), (count + 1, count + 1))
-        _, patches = connected_components(touching, directed=False)
+        touching = scipy.sparse.coo_array(
+            (np.ones(pairs.shape[1]), (pairs[0], pairs[1])), (count + 1, count + 1)
+        )
+        _, patches = scipy.sparse.csgraph.connected_components(touching, directed=False)
         labels = patches[labels]
     found, numbered = np.unique(labels[contact], return_inverse=True)
     order = np.empty(len(found), dtype=np.intp)

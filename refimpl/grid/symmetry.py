@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.fft as sfft
+import scipy
 
 from refimpl.grid.fields import Mask
 from refimpl.grid.grid import Grid
@@ -54,8 +54,8 @@ def _matched(contact: Mask, image: Mask) -> Mask:
     """An image of a periodic contact, moved to where its rows and its columns match the contact's best."""
     shifts = []
     for axis in (0, 1):
-        counts, found = (sfft.rfft(np.count_nonzero(m, axis=1 - axis)) for m in (contact, image))
-        overlaps = np.rint(sfft.irfft(counts * np.conj(found), contact.shape[axis]))
+        counts, found = (scipy.fft.rfft(np.count_nonzero(m, axis=1 - axis)) for m in (contact, image))
+        overlaps = np.rint(scipy.fft.irfft(counts * np.conj(found), contact.shape[axis]))
         shifts.append(int(np.argmax(overlaps)))
     moved: Mask = np.roll(image, shifts, (0, 1))
     return moved

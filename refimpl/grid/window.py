@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import scipy.fft as sfft
+import scipy
 from numpy.typing import NDArray
 
 Shape = tuple[int, int]
@@ -92,7 +92,7 @@ class Window:
 
 def padded_length(n: int) -> int:
     """Return the least even fast length of a transform of at least ``n`` points."""
-    return 2 * int(sfft.next_fast_len((n + 1) // 2, real=True))
+    return 2 * int(scipy.fft.next_fast_len((n + 1) // 2, real=True))
 
 
 def _filled(start: int, stop: int, count: int) -> tuple[int, int]:

@@ -23,8 +23,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import fft
 
 from refimpl.grid import Array, Grid
 from refimpl.model.materials import Material, Pair
@@ -78,8 +78,8 @@ class _Body:
         grid = contact.grid
         self.shape = grid.transform_shape
         dx, dy = grid.spacings
-        kx = 2 * np.pi * fft.fftfreq(self.shape[0], dx)[:, None]
-        ky = 2 * np.pi * fft.rfftfreq(self.shape[1], dy)[None, :]
+        kx = 2 * np.pi * scipy.fft.fftfreq(self.shape[0], dx)[:, None]
+        ky = 2 * np.pi * scipy.fft.rfftfreq(self.shape[1], dy)[None, :]
         self.square = kx**2 + ky**2
         # first derivatives have no sign at the highest wavenumber of an even grid
         kx = np.where(np.abs(kx) < np.pi / dx * (1 - 1e-12), kx, 0.0)
@@ -150,12 +150,12 @@ class _Body:
         return self._back(self.ik[0] * self._to(flux[0]) + self.ik[1] * self._to(flux[1]))
 
     def _to(self, values: Array) -> Complex:
-        found: Complex = fft.rfft2(values, self.shape)
+        found: Complex = scipy.fft.rfft2(values, self.shape)
         return found
 
     def _back(self, transform: Complex) -> Array:
         nx, ny = self.contact.grid.shape
-        found: Array = fft.irfft2(transform, self.shape)[:nx, :ny]
+        found: Array = scipy.fft.irfft2(transform, self.shape)[:nx, :ny]
         return found
 
     @staticmethod

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cache, lru_cache
 
 import numpy as np
-from scipy.interpolate import BSpline, make_interp_spline
+import scipy
 
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
@@ -147,7 +147,7 @@ def _rests(tangents: Array, wavelength: float, positions: Array) -> Array:
 
 
 @lru_cache(maxsize=16)
-def _along_slopes(wavelength: float, positions: tuple[float, ...]) -> BSpline:
+def _along_slopes(wavelength: float, positions: tuple[float, ...]) -> scipy.interpolate.BSpline:
     """The table's parts there over the tangent of the slope: cubic splines, harmonics in the position."""
     crest_to_valley = np.moveaxis(_over_wavenumber()(1 / wavelength), 1, 0)
     # 1 - position changes the neighbours' places: the other half of the turn
@@ -158,7 +158,9 @@ def _along_slopes(wavelength: float, positions: tuple[float, ...]) -> BSpline:
     at = np.minimum(positions, 1 - np.array(positions))
     phases = np.exp(2j * math.pi * at[:, None] * np.arange(len(weights)))
     parts = np.real(np.tensordot(weights * phases, harmonics, axes=1))
-    return make_interp_spline(np.tan(np.radians(_table()["slope_deg"])), np.moveaxis(parts, 0, 1))
+    return scipy.interpolate.make_interp_spline(
+        np.tan(np.radians(_table()["slope_deg"])), np.moveaxis(parts, 0, 1)
+    )
 
 
 def _departure(tangents: Array, wavelength: float, positions: Array, nu: float, parts: Array) -> Array:
@@ -184,7 +186,7 @@ def _table() -> dict[str, Array]:
 
 
 @cache
-def _over_wavenumber() -> BSpline:
+def _over_wavenumber() -> scipy.interpolate.BSpline:
     """Both parts of the rest at both neighbours over 1 / wavelength, ``(slopes, positions, 4)``.
 
     Waves of one offset and place repeat over the wavenumber, and not over the wavelength's logarithm.
@@ -193,4 +195,6 @@ def _over_wavenumber() -> BSpline:
     neighbours = [int(np.flatnonzero(table["offset"] == side * _NEIGHBOUR)[0]) for side in (-1, 1)]
     parts = np.concatenate([table[part][..., neighbours] for part in PLANE.arrays], axis=-1)
     rising = slice(None, None, -1)
-    return make_interp_spline(1 / table["wavelength"][rising], np.moveaxis(parts, 1, 0)[rising])
+    return scipy.interpolate.make_interp_spline(
+        1 / table["wavelength"][rising], np.moveaxis(parts, 1, 0)[rising]
+    )

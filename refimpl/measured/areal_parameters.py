@@ -10,9 +10,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import fft
-from scipy.ndimage import map_coordinates
 
 from refimpl.grid import Array
 from refimpl.surfaces.statistics import kurtosis, rms_height, skewness
@@ -65,9 +64,9 @@ class Autocorrelation:
         known = np.isfinite(z)
         d = np.where(known, z - np.nanmean(z), 0.0)
         reach = tuple(n // 2 for n in z.shape)
-        shape = tuple(fft.next_fast_len(n + m, real=True) for n, m in zip(z.shape, reach, strict=True))
-        products = fft.irfft2(np.abs(fft.rfft2(d, s=shape)) ** 2, s=shape)
-        pairs = fft.irfft2(np.abs(fft.rfft2(known.astype(float), s=shape)) ** 2, s=shape)
+        shape = tuple(scipy.fft.next_fast_len(n + m, real=True) for n, m in zip(z.shape, reach, strict=True))
+        products = scipy.fft.irfft2(np.abs(scipy.fft.rfft2(d, s=shape)) ** 2, s=shape)
+        pairs = scipy.fft.irfft2(np.abs(scipy.fft.rfft2(known.astype(float), s=shape)) ** 2, s=shape)
         order = tuple(np.arange(-m, m + 1) for m in reach)
         with np.errstate(invalid="ignore", divide="ignore"):
             mean = np.where(pairs > 0.5, products / pairs, np.nan)[np.ix_(*order)]
@@ -92,7 +91,7 @@ class Autocorrelation:
             self.values.shape[k] // 2 + np.outer(turn(angle), r) / self.pixel[k]
             for k, turn in enumerate((np.cos, np.sin))
         ]
-        along = map_coordinates(np.nan_to_num(self.values), places, order=1, mode="nearest")
+        along = scipy.ndimage.map_coordinates(np.nan_to_num(self.values), places, order=1, mode="nearest")
         below = along <= level
         first = np.argmax(below, axis=1)
         k = np.arange(DIRECTIONS)
@@ -149,8 +148,10 @@ class Spectrum:
         window = np.outer(*windows)
         known = np.isfinite(z)
         weighted = np.where(known, z - np.nanmean(z), 0.0) * window
-        power = np.abs(fft.fft2(weighted)) ** 2 * (pixel[0] * pixel[1] / float(np.sum(window[known] ** 2)))
-        qx, qy = (2 * np.pi * fft.fftfreq(n, edge) for n, edge in zip(z.shape, pixel, strict=True))
+        power = np.abs(scipy.fft.fft2(weighted)) ** 2 * (
+            pixel[0] * pixel[1] / float(np.sum(window[known] ** 2))
+        )
+        qx, qy = (2 * np.pi * scipy.fft.fftfreq(n, edge) for n, edge in zip(z.shape, pixel, strict=True))
         cos, sin = math.cos(lay), math.sin(lay)
         along = anisotropy * (cos * qx[:, None] + sin * qy[None, :])
         norm = np.hypot(along, cos * qy[None, :] - sin * qx[:, None])

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy
 
 from refimpl.errors import InputError, require_one_of
 from refimpl.grid import Array
@@ -185,7 +185,7 @@ def _fit_curved(x: Array, y: Array, z: Array, level: str, pixel: tuple[float, fl
     size = math.hypot(sx, sy)
     spread = float(np.nanstd(part)) or 1.0
     scale = np.array([spread, spread / size, spread / size, spread / size**2, 1.0][: len(guess)])
-    found = least_squares(
+    found = scipy.optimize.least_squares(
         lambda numbers: ((curved(numbers * scale)(at_x, at_y) - part)[known]) / spread,
         np.array(guess) / scale, method="lm", xtol=1e-14, ftol=1e-14, gtol=1e-14,
     )  # fmt: skip

@@ -17,7 +17,7 @@ from types import ModuleType
 from typing import Any, TypeVar
 
 import numpy as np
-from scipy.io.matlab import MatReadError
+import scipy
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
@@ -193,7 +193,13 @@ def library_for(path: Path) -> ModuleType:
 def corrupt(library: ModuleType) -> tuple[type[Exception], ...]:
     """All that the library raises on files that are not what they claim to be."""
     own = library.Exceptions  # with no base in common
-    return (*CORRUPT, MatReadError, own.ReadFileError, own.UnknownFileFormat, own.CannotPerformAnalysisError)
+    return (
+        *CORRUPT,
+        scipy.io.matlab.MatReadError,
+        own.ReadFileError,
+        own.UnknownFileFormat,
+        own.CannotPerformAnalysisError,
+    )
 
 
 def first_line(error: object) -> str:

@@ -11,10 +11,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import find_objects, label
-from scipy.sparse import csc_array
-from scipy.sparse.linalg import spsolve
 
 from refimpl.grid import Array
 
@@ -44,7 +42,7 @@ def fill(heights: Array, pixel: tuple[float, float]) -> Array:
     filled = heights.copy()
     if not missing.any():
         return filled
-    holes, count = label(missing)
+    holes, count = scipy.ndimage.label(missing)
     sizes = np.bincount(holes.ravel(), minlength=count + 1)
     large = np.flatnonzero(sizes[1:] > MAX_ELIMINATED) + 1
     small = missing & ~np.isin(holes, large)
@@ -52,7 +50,7 @@ def fill(heights: Array, pixel: tuple[float, float]) -> Array:
         filled[small] = _eliminated(heights, small, pixel)
     elif small.any():
         filled[small] = _iterated(heights, small, pixel)
-    places = find_objects(holes) if len(large) else []
+    places = scipy.ndimage.find_objects(holes) if len(large) else []
     for number in large:
         around = tuple(slice(max(s.start - 1, 0), s.stop + 1) for s in places[number - 1])
         hole = holes[around] == number
@@ -77,8 +75,8 @@ def _eliminated(heights: Array, hole: NDArray[np.bool_], pixel: tuple[float, flo
         weights.append(np.full(np.count_nonzero(~known), -coupling))
     n = np.arange(len(diagonal))
     place = (np.concatenate([n, *rows]), np.concatenate([n, *columns]))
-    laplace = csc_array((np.concatenate([diagonal, *weights]), place), shape=(len(n), len(n)))
-    return np.asarray(spsolve(laplace, right))
+    laplace = scipy.sparse.csc_array((np.concatenate([diagonal, *weights]), place), shape=(len(n), len(n)))
+    return np.asarray(scipy.sparse.linalg.spsolve(laplace, right))
 
 
 def _neighbours(missing: NDArray[np.bool_], axis: int, step: int) -> tuple[_Index, _Index]:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from scipy import fft
-from scipy.ndimage import percentile_filter
+import scipy
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
@@ -68,7 +67,9 @@ def _without_outliers(reading: RawHeights, times: float, repeats: bool) -> RawHe
     missing = np.isnan(reading.heights)
     away = _off_neighbours(_filled(reading), repeats)
     typical = MAD_TO_RMS * float(np.median(away[~missing]))
-    around = percentile_filter(away, PERCENTILE, NEIGHBOURHOOD, mode="wrap" if repeats else "nearest")
+    around = scipy.ndimage.percentile_filter(
+        away, PERCENTILE, NEIGHBOURHOOD, mode="wrap" if repeats else "nearest"
+    )
     rounding = 1e-9 * float(np.nanstd(reading.heights))
     out = ~missing & (away > times * np.maximum(around / PERCENTILE_TO_RMS, max(typical, rounding)))
     note = (
@@ -127,16 +128,17 @@ def gaussian_filter(z: Array, pixel: tuple[float, float], wavelength: float, rep
         for edge, n in zip(pixel, z.shape, strict=True)
     ]
     shape = tuple(
-        n if repeats else fft.next_fast_len(n + pad, real=True) for n, pad in zip(z.shape, pads, strict=True)
+        n if repeats else scipy.fft.next_fast_len(n + pad, real=True)
+        for n, pad in zip(z.shape, pads, strict=True)
     )
-    fx, fy = fft.fftfreq(shape[0], pixel[0]), fft.rfftfreq(shape[1], pixel[1])
-    transmission = [np.exp2(-((wavelength * f) ** 2)) for f in (fx, fft.fftfreq(shape[1], pixel[1]))]
-    spectrum = fft.rfft2(z, s=shape)
+    fx, fy = scipy.fft.fftfreq(shape[0], pixel[0]), scipy.fft.rfftfreq(shape[1], pixel[1])
+    transmission = [np.exp2(-((wavelength * f) ** 2)) for f in (fx, scipy.fft.fftfreq(shape[1], pixel[1]))]
+    spectrum = scipy.fft.rfft2(z, s=shape)
     spectrum *= transmission[0][:, None]
     spectrum *= np.exp2(-((wavelength * fy) ** 2))[None, :]
-    mean = fft.irfft2(spectrum, s=shape)[: z.shape[0], : z.shape[1]]
+    mean = scipy.fft.irfft2(spectrum, s=shape)[: z.shape[0], : z.shape[1]]
     weights = [
-        fft.ifft(t * fft.fft(np.ones(n), size)).real[:n]
+        scipy.fft.ifft(t * scipy.fft.fft(np.ones(n), size)).real[:n]
         for t, n, size in zip(transmission, z.shape, shape, strict=True)
     ]
     return np.asarray(mean / weights[0][:, None] / weights[1][None, :])

@@ -11,8 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import fft
-from scipy.optimize import minimize
+import scipy
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
@@ -151,7 +150,7 @@ def _self_affine(z: Array, pixel: Pixel) -> tuple[Values, tuple[str, ...]]:
         (h, math.log(q0)) for h in (0.2, 0.5, 0.8) for q0 in q[: max(len(q) // 2, 1) : max(len(q) // 16, 1)]
     ]
     best = min(starts, key=lambda s: loss(np.array(s)))
-    hurst, log_roll = minimize(
+    hurst, log_roll = scipy.optimize.minimize(
         loss, np.array(best), method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-9}
     ).x
     roll_off = 2 * math.pi * math.exp(-log_roll)
@@ -237,11 +236,11 @@ def _drawn(
     rng: np.random.Generator,
 ) -> Array:
     """A Gaussian map of that spectrum's shape and ensemble rms: part of one of twice its period."""
-    double = tuple(fft.next_fast_len(2 * n, real=True) for n in shape)
-    qx = 2 * np.pi * fft.fftfreq(double[0], pixel[0])[:, None]
-    qy = 2 * np.pi * fft.rfftfreq(double[1], pixel[1])[None, :]
-    full = density(qx, 2 * np.pi * fft.fftfreq(double[1], pixel[1])[None, :])
-    noise = fft.rfft2(rng.normal(size=double))
+    double = tuple(scipy.fft.next_fast_len(2 * n, real=True) for n in shape)
+    qx = 2 * np.pi * scipy.fft.fftfreq(double[0], pixel[0])[:, None]
+    qy = 2 * np.pi * scipy.fft.rfftfreq(double[1], pixel[1])[None, :]
+    full = density(qx, 2 * np.pi * scipy.fft.fftfreq(double[1], pixel[1])[None, :])
+    noise = scipy.fft.rfft2(rng.normal(size=double))
     variance = float(full.sum()) / math.prod(double)
-    z = fft.irfft2(noise * np.sqrt(density(qx, qy) / variance), s=double)
+    z = scipy.fft.irfft2(noise * np.sqrt(density(qx, qy) / variance), s=double)
     return np.asarray(rms * z[: shape[0], : shape[1]])

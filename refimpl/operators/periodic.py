@@ -12,7 +12,7 @@ from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
-import scipy.fft as sfft
+import scipy
 
 from refimpl.grid import Array, Grid
 from refimpl.operators.fft import Counter
@@ -69,8 +69,8 @@ class PeriodicInfluence:
     def _wavevectors(self) -> tuple[Array, Array, Array]:
         """``q_x`` (column), ``q_y`` (row) and ``q^2`` with its zero replaced by infinity (1/m)."""
         (n, m), (dx, dy) = self.grid.shape, self.grid.spacings
-        q_x = 2 * np.pi * sfft.rfftfreq(n, dx)[:, None]
-        q_y = 2 * np.pi * sfft.fftfreq(m, dy)[None, :]
+        q_x = 2 * np.pi * scipy.fft.rfftfreq(n, dx)[:, None]
+        q_y = 2 * np.pi * scipy.fft.fftfreq(m, dy)[None, :]
         squared = q_x**2 + q_y**2
         squared[0, 0] = np.inf
         return q_x, q_y, squared

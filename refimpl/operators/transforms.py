@@ -12,7 +12,7 @@ from importlib import import_module
 from typing import Any, Protocol
 
 import numpy as np
-import scipy.fft as sfft
+import scipy
 from numpy.typing import NDArray
 
 from refimpl.grid import Array
@@ -58,40 +58,42 @@ class SciPy:
 
     def columns(self, values: Array, spectrum: Complex, workers: int) -> None:
         """See `Library`."""
-        spectrum[...] = sfft.rfft(values, axis=0, workers=workers)
+        spectrum[...] = scipy.fft.rfft(values, axis=0, workers=workers)
 
     def rows(self, spectrum: Complex, workers: int, *, forward: bool) -> Complex:
         """See `Library`."""
-        transform = sfft.fft if forward else sfft.ifft
+        transform = scipy.fft.fft if forward else scipy.fft.ifft
         found: Complex = transform(spectrum, axis=1, overwrite_x=True, workers=workers)
         return found
 
     def columns_back(self, spectrum: Complex, length: int, workers: int) -> Array:
         """See `Library`."""
-        found: Array = sfft.irfft(spectrum, n=length, axis=0, workers=workers)
+        found: Array = scipy.fft.irfft(spectrum, n=length, axis=0, workers=workers)
         return found
 
     def plane(self, values: Array, shape: tuple[int, ...], workers: int) -> Complex:
         """See `Library`."""
-        found: Complex = sfft.rfft2(values, s=shape[::-1], axes=(1, 0), workers=workers)
+        found: Complex = scipy.fft.rfft2(values, s=shape[::-1], axes=(1, 0), workers=workers)
         return found
 
     def plane_back(self, spectrum: Complex, shape: tuple[int, ...], workers: int) -> Array:
         """See `Library`."""
-        found: Array = sfft.irfft2(spectrum, s=shape[::-1], axes=(1, 0), overwrite_x=True, workers=workers)
+        found: Array = scipy.fft.irfft2(
+            spectrum, s=shape[::-1], axes=(1, 0), overwrite_x=True, workers=workers
+        )
         return found
 
     def even_plane(self, quarter: Array, workers: int) -> Array:
         """See `Library`."""
-        found: Array = sfft.dctn(quarter, type=1, overwrite_x=True, workers=workers)
+        found: Array = scipy.fft.dctn(quarter, type=1, overwrite_x=True, workers=workers)
         return found
 
     def odd_plane(self, quarter: Array, workers: int) -> Array:
         """See `Library`."""
         found = np.zeros(quarter.shape)
         if len(found) > 2:
-            cosines = sfft.dct(quarter[1:-1], type=1, axis=1, workers=workers)
-            found[1:-1] = sfft.dst(cosines, type=1, axis=0, overwrite_x=True, workers=workers)
+            cosines = scipy.fft.dct(quarter[1:-1], type=1, axis=1, workers=workers)
+            found[1:-1] = scipy.fft.dst(cosines, type=1, axis=0, overwrite_x=True, workers=workers)
         return found
 
 

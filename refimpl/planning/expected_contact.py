@@ -194,7 +194,7 @@ def _symmetries(coarse: Problem, problem: Problem) -> tuple[bool, bool]:
     compared.
     """
     seen = [z for p in (coarse, problem) for z in (p.gap, p.mean_surface)]
-    return all(_alike(z, z[::-1, ::-1]) for z in seen), _mirrored(problem.direction, seen)
+    return all(_is_image(z, z[::-1, ::-1]) for z in seen), _mirrored(problem.direction, seen)
 
 
 def _slopes(problem: Problem, heights: Array) -> Slopes:
@@ -207,7 +207,7 @@ def _patches(contact: Mask, periodic: bool) -> float:
     return float(sizes.sum() ** 2 / np.sum(sizes**2))
 
 
-def _alike(z: Array, image: Array) -> bool:
+def _is_image(z: Array, image: Array) -> bool:
     """Whether a surface is its image, which pairs the first half of its rows with the second."""
     half = (len(z) + 1) // 2
     apart = float(np.abs(z[:half] - image[:half]).max())
@@ -221,4 +221,4 @@ def _mirrored(direction: float, surfaces: Sequence[Array]) -> bool:
         return False
     if round(quarter) % 2 == 0:
         surfaces = [z.T for z in surfaces]
-    return all(_alike(z, z[::-1]) for z in surfaces)
+    return all(_is_image(z, z[::-1]) for z in surfaces)

@@ -55,7 +55,7 @@ def _raised(lower: Array, gap: Array, spent: Array) -> Array:
 
 
 class Discretiser:
-    """Problems of one scene under its load or at an approach (m), with the notes of its surfaces.
+    """Problems of one scene under its load or at an approach (m).
 
     The grid on which terms are decided is mostly the grid to solve on: its heights are sampled once.
     """
@@ -63,7 +63,6 @@ class Discretiser:
     def __init__(self, scene: Scene, approach: float | None) -> None:
         self._scene, self._approach = scene, approach
         self._last: Problem | None = None
-        self.notes: tuple[str, ...] = ()
 
     @property
     def scene(self) -> Scene:
@@ -82,6 +81,4 @@ class Discretiser:
         return problem.with_terms(terms)
 
     def _problem(self, grid: Grid) -> Problem:
-        problem = discretise(self._scene, grid, approach=self._approach)
-        self.notes = self._scene.notes(grid)
-        return problem
+        return discretise(self._scene, grid, approach=self._approach)

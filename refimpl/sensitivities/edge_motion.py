@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.ndimage import binary_erosion, uniform_filter
+import scipy
 
 from refimpl.grid import Array
 from refimpl.sensitivities.fixed_contact import FixedContact
@@ -24,7 +24,7 @@ class EdgeMotion:
     def __init__(self, fixed: FixedContact, over_load: tuple[float, float], loaded: Array) -> None:
         self.fixed = fixed
         wrapped = np.pad(fixed.contact, 1, mode=fixed.problem.grid.continuation)
-        self.elements = (wrapped & ~binary_erosion(wrapped, border_value=1))[1:-1, 1:-1]
+        self.elements = (wrapped & ~scipy.ndimage.binary_erosion(wrapped, border_value=1))[1:-1, 1:-1]
         derivative, counted = over_load
         self.everywhere = np.ones(fixed.contact.shape)
         self.factors = [
@@ -48,7 +48,7 @@ class EdgeMotion:
 
         def ratio(where: Array, width: int) -> Array:
             change, level = (
-                uniform_filter(where * field, width, mode=mode)[self.elements]
+                scipy.ndimage.uniform_filter(where * field, width, mode=mode)[self.elements]
                 for field in (pressure, self.fixed.pressure)
             )
             return np.asarray(change / level)

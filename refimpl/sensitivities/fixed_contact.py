@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse.linalg import LinearOperator, gmres
+import scipy
 
 from refimpl.grid import Array, Mask
 from refimpl.model.certificate import approach_from
@@ -74,10 +74,12 @@ class FixedContact:
             return LinearResponse(*self._unpacked(change), 0.0)
         size = len(change)
         jacobian, plain = (
-            LinearOperator((size, size), matvec=product, dtype=np.float64)
+            scipy.sparse.linalg.LinearOperator((size, size), matvec=product, dtype=np.float64)
             for product in (self.jacobian, self.plain_inverse)
         )
-        x, _ = gmres(jacobian, -change, rtol=_TOLERANCE, restart=_RESTART, maxiter=_CYCLES, M=plain)
+        x, _ = scipy.sparse.linalg.gmres(
+            jacobian, -change, rtol=_TOLERANCE, restart=_RESTART, maxiter=_CYCLES, M=plain
+        )
         left = float(np.linalg.norm(jacobian @ x + change) / np.linalg.norm(change))
         return LinearResponse(*self._unpacked(x), left)
 

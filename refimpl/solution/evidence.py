@@ -7,8 +7,15 @@ from functools import cached_property
 
 from refimpl.accuracy.first_contact import HERTZ_EXPONENTS
 from refimpl.accuracy.grid_features import GridFeatures
-from refimpl.accuracy.iteration_error import AREAS, Uncertainty, active_set_parts, iteration_parts, merged
-from refimpl.grid import Array
+from refimpl.accuracy.iteration_error import (
+    AREAS,
+    Uncertainty,
+    active_set_parts,
+    iteration_parts,
+    merged,
+    reported_numbers,
+)
+from refimpl.grid import Array, read_only
 from refimpl.half_space.influence_error import SlopeError, constant_along_an_axis, slope_error
 from refimpl.model.certificate import State
 from refimpl.model.problem import Problem
@@ -44,6 +51,17 @@ class Evidence:
         if ended_well and not self.state.certificate.satisfies(self.tolerance):
             return Status.STAGNATED
         return self.state.status
+
+    def freeze(self) -> None:
+        """Make the arrays read-only, without copies: what is computed from them later is what it was."""
+        self.state.freeze()
+        for array in (self.problem.gap, self.problem.mean_surface):
+            read_only(array)
+
+    @cached_property
+    def numbers(self) -> dict[str, float]:
+        """Reported numbers that need no features (SI)."""
+        return reported_numbers(self.problem, self.state)
 
     @cached_property
     def surfaces(self) -> tuple[Array, Array]:

@@ -6,7 +6,7 @@ None of them is an error: the theory has no scale, and what is unusual may be ri
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from refimpl.model.materials import Material
 from refimpl.planning.plan import Plan
@@ -22,11 +22,11 @@ _INDEX = 1e3  # plasticity index
 _LENGTHS = ("correlation_length", "short_cut")  # roughness of longer ones is a smooth surface on the domain
 
 
-def notes(solved: Evidence, lines: Sequence[str]) -> tuple[Notice, ...]:
+def notes(solved: Evidence) -> tuple[Notice, ...]:
     """Notes of implausible inputs and of surfaces; unresolved roughness has a named warning of its own."""
     scene, grid = solved.scene, solved.problem.grid
     parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
-    lines = (*implausible(scene, solved.plan), *lines)
+    lines = (*implausible(scene, solved.plan), *scene.notes(grid))
     rough = (part for part in parts if part.detail(max(grid.spacings)) is not None)
     named = {line for part in rough for line in part.notes(grid)}
     return tuple(Notice(line) for line in lines if line not in named)

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from refimpl.accuracy import refinement
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.bounds.proven_bounds import Bounds, proven_bounds
 from refimpl.errors import require_one_of
@@ -26,7 +27,8 @@ from refimpl.planning.plan import Plan
 from refimpl.planning.term_effects import Effect
 from refimpl.solution.cost import Cost
 from refimpl.solution.evidence import Evidence
-from refimpl.solution.limits import ModelWarning, Notice
+from refimpl.solution.limits import ModelWarning, Notice, model_warnings
+from refimpl.solution.plausibility import notes
 
 UNITS = {
     "friction_coefficient_corrected": "1",
@@ -79,17 +81,17 @@ class Parts:
     slope_error: SlopeError = _from("evidence")
     tolerance: float = _from("evidence")
 
-    approach: float = _from("features.numbers")
-    normal_force: float = _from("features.numbers")
-    friction_force: float = _from("features.numbers")
-    binormal_force: float = _from("features.numbers")
-    friction_coefficient: float = _from("features.numbers")
+    approach: float = _from("evidence.numbers")
+    normal_force: float = _from("evidence.numbers")
+    friction_force: float = _from("evidence.numbers")
+    binormal_force: float = _from("evidence.numbers")
+    friction_coefficient: float = _from("evidence.numbers")
     friction_coefficient_corrected: float = _from("features.numbers")
     friction_force_corrected: float = _from("features.numbers")
-    contact_area: float = _from("features.numbers")
-    contact_area_corrected: float = _from("features.numbers")
-    plastic_area: float = _from("features.numbers")
-    max_pressure: float = _from("features.numbers")
+    contact_area: float = _from("evidence.numbers")
+    contact_area_corrected: float = _from("evidence.numbers")
+    plastic_area: float = _from("evidence.numbers")
+    max_pressure: float = _from("evidence.numbers")
 
     pressure: Array = _from("state")
     traction: Array = _from("state")
@@ -103,35 +105,58 @@ class Parts:
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Record(Parts):
-    """A `Solution` without its texts: what it stores, and what follows from that. Arrays are read-only."""
+    """A `Solution` without its texts: what it stores, and what follows from that. Arrays are read-only.
+
+    Error bars, warnings and whatever else no solve needs are computed when first read, and in a pickle.
+    """
 
     evidence: Evidence
-    status: Status
-    uncertainty: Mapping[str, Mapping[str, float]]
-    warnings: tuple[ModelWarning | Notice, ...]
     cost: Cost
+    grids: tuple[GridFeatures, ...]
+    shortfall: Notice | None
     changes: Mapping[str, Any]
 
     def __init__(
         self,
         evidence: Evidence,
-        status: Status,
-        uncertainty: Mapping[str, Mapping[str, float]],
-        warnings: tuple[ModelWarning | Notice, ...],
         cost: Cost,
+        grids: tuple[GridFeatures, ...] = (),
+        shortfall: Notice | None = None,
         changes: Mapping[str, Any] | None = None,
         **others: Any,
     ) -> None:
-        """Store what is no part of the evidence.
+        """Store what all else follows from.
 
         ``others`` are attributes that `dataclasses.replace` changes: they hide the evidence's own.
         """
         if unknown := [name for name in others if not hasattr(type(self), name)]:
             raise TypeError(f"a Solution has no attribute {unknown[0]}")
+        own = {"evidence": evidence, "cost": cost, "grids": grids, "shortfall": shortfall}
         changes = {**(changes or {}), **others}
-        own = {"evidence": evidence, "status": status, "uncertainty": uncertainty, "warnings": warnings}
-        vars(self).update(own, cost=cost, changes=changes, **changes)
-        evidence.state.freeze()
+        vars(self).update(own, changes=changes, **changes)
+        evidence.freeze()
+
+    def __getstate__(self) -> dict[str, Any]:
+        _ = self.status, self.uncertainty, self.warnings
+        return vars(self)
+
+    @cached_property
+    def status(self) -> Status:
+        """Status of the solve; a certificate that fails counts more than an accuracy that was not reached."""
+        ended = self.evidence.status
+        short = self.shortfall is not None and ended in (Status.CONVERGED, Status.CYCLED)
+        return Status.ACCURACY_NOT_REACHED if short else ended
+
+    @cached_property
+    def uncertainty(self) -> Mapping[str, Mapping[str, float]]:
+        """For each reported number the parts of its error bar, absolute, in the number's unit."""
+        return refinement.uncertainty(self.grids or [self.features])
+
+    @cached_property
+    def warnings(self) -> tuple[ModelWarning | Notice, ...]:
+        """Notes of inputs and surfaces, warnings of the model's limits, and why an accuracy was missed."""
+        ended = (self.shortfall,) if self.shortfall else ()
+        return (*notes(self.evidence), *model_warnings(self.evidence), *ended)
 
     @cached_property
     def surface_lower(self) -> Array:

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.iteration_error import NUMBERS
 from refimpl.grid import Grid
-from refimpl.model.state import Status
 from refimpl.solution import display
 from refimpl.solution.arrays import as_dataset
 from refimpl.solution.cost import Cost
 from refimpl.solution.evidence import Evidence
-from refimpl.solution.limits import Notice, model_warnings, plain_warning
+from refimpl.solution.limits import Notice, plain_warning
 from refimpl.solution.patches import Patch, patches_of
-from refimpl.solution.plausibility import notes
 from refimpl.solution.record import Record
 
 REPORTED = NUMBERS
@@ -55,6 +54,8 @@ class Solution(Record):
     cost : work done
     features : what error bars look at on this grid, for studies of several grids
     evidence : state, features and effects on this grid, which the numbers and arrays are read from
+    grids : features of all grids of a refinement, coarse to fine; empty for a single grid
+    shortfall : why a requested accuracy was not reached
     changes : numbers and arrays that `dataclasses.replace` put in place of those
     """
 
@@ -120,25 +121,16 @@ def _dimensions(grid: Grid) -> dict[str, Any]:
     return {"grid": grid.shape[0] if same else list(grid.shape), **lengths}
 
 
-def _short_of_accuracy(solved: Evidence) -> Status:
-    """The status where a requested accuracy was not reached: a certificate that fails counts more."""
-    ended_well = solved.status in (Status.CONVERGED, Status.CYCLED)
-    return Status.ACCURACY_NOT_REACHED if ended_well else solved.status
-
-
 def assemble(
     evidence: Evidence,
-    uncertainty: Mapping[str, Mapping[str, float]],
-    lines: Sequence[str] = (),
     *,
+    grids: Sequence[GridFeatures] = (),
     shortfall: Notice | None = None,
     cost: Cost | None = None,
 ) -> Solution:
-    """Return the solution of a solved problem, with its error bars and warnings; ``lines`` are of surfaces.
+    """Return the solution of a solved problem.
 
-    ``shortfall`` says why a requested accuracy was not reached; ``cost`` is that of all grids.
+    ``grids`` are the features that error bars come from, of this grid alone by default. ``shortfall`` says
+    why a requested accuracy was not reached; ``cost`` is that of all grids.
     """
-    status = _short_of_accuracy(evidence) if shortfall else evidence.status
-    ended = (shortfall,) if shortfall else ()
-    warnings = (*notes(evidence, lines), *model_warnings(evidence), *ended)
-    return Solution(evidence, status, uncertainty, warnings, cost or evidence.cost)
+    return Solution(evidence, cost or evidence.cost, tuple(grids), shortfall)

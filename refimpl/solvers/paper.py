@@ -19,8 +19,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.fft as sfft
-from scipy.ndimage import map_coordinates
+import scipy
 
 from refimpl.grid import Array, Mask, inner, resampled
 from refimpl.model.certificate import State, certify
@@ -93,7 +92,9 @@ def _refinements(problem: Problem) -> list[Problem]:
 def _interpolated(coarse: Array) -> Array:
     """Cubic interpolation to the twice finer element centres; negative overshoot is cut off."""
     at = ((np.arange(2 * n) + 0.5) / 2 - 0.5 for n in coarse.shape)
-    fine: Array = map_coordinates(coarse, np.meshgrid(*at, indexing="ij"), order=3, mode="nearest")
+    fine: Array = scipy.ndimage.map_coordinates(
+        coarse, np.meshgrid(*at, indexing="ij"), order=3, mode="nearest"
+    )
     return np.maximum(fine, 0.0)
 
 
@@ -124,7 +125,7 @@ class _Scheme:
         (n, m), dx = problem.grid.shape, problem.grid.spacings[0]
         circle = [np.minimum(np.arange(count), count - np.arange(count)) for count in (n, m)]
         row = unit_table("normal", (1 + n // 2, 1 + m // 2), problem.grid.aspect)[np.ix_(*circle)] * dx
-        self._periodic_hat: Array = problem.elasticity.symbol(sfft.rfft2(row).real)
+        self._periodic_hat: Array = problem.elasticity.symbol(scipy.fft.rfft2(row).real)
 
     def result(self) -> SolverResult:
         """Balance under the rule for tau's active set that all solvers share."""
@@ -275,10 +276,10 @@ class _Scheme:
 
     def _apply_periodic(self, pressure: Array) -> Array:
         self.operator.counter.add("periodic", pressure.size)
-        result: Array = sfft.irfft2(sfft.rfft2(pressure) * self._periodic_hat, s=pressure.shape)
+        result: Array = scipy.fft.irfft2(scipy.fft.rfft2(pressure) * self._periodic_hat, s=pressure.shape)
         return result
 
     def _invert(self, residual: Array) -> Array:
         self.operator.counter.add("periodic", residual.size)
-        result: Array = sfft.irfft2(sfft.rfft2(residual) / self._periodic_hat, s=residual.shape)
+        result: Array = scipy.fft.irfft2(scipy.fft.rfft2(residual) / self._periodic_hat, s=residual.shape)
         return result

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
+import scipy
 
 from refimpl.grid import Array
 
@@ -30,7 +30,7 @@ def resample_periodic(data: Array, x: Array, y: Array) -> Array:
 
 
 def _spline(values: Array, at: Array) -> Array:
-    return np.asarray(make_interp_spline(np.arange(len(values)), values, k=3)(at))
+    return np.asarray(scipy.interpolate.make_interp_spline(np.arange(len(values)), values, k=3)(at))
 
 
 def _reach(at: Array, n: int) -> slice:

@@ -7,7 +7,7 @@ Two lengths and a lay: the isotropic field of unit length in sheared coordinates
 ``((x + s y) / a, y / b)``, so that Eq. (9) holds to rounding for any lengths and lay.
 
 Periodic: isotropic noise repeats on a lattice that divides the period. A sheared lattice does not close over
-both periods, so two lengths are summed as waves of the torus (`refimpl.surfaces.waves`). The power of a wave
+both periods, so two lengths are summed as waves of the period (`refimpl.surfaces.waves`). The power of a wave
 is Eq. (9)'s transform, ``exp(-(lx^2 q'_x^2 + ly^2 q'_y^2) / 9.2)``; by Poisson's sum that is the periodic sum
 of Eq. (9). Waves below 2e-17 of the largest amplitude are dropped.
 """
@@ -20,7 +20,7 @@ from functools import cached_property
 from typing import ClassVar, NoReturn
 
 import numpy as np
-from scipy.sparse import csr_array
+import scipy
 
 from refimpl.errors import InputError, require_number, require_size, size_text
 from refimpl.grid import Array, Grid
@@ -129,7 +129,7 @@ class GaussianRoughness(Surface):
                 return self._waves(x, y, grid)
         return self.rms * self._lattice.field(self.seed, x, y, grid.lengths if grid.periodic else None)
 
-    def smoothing(self, x: Array, period: float | None = None) -> tuple[range, csr_array]:
+    def smoothing(self, x: Array, period: float | None = None) -> tuple[range, scipy.sparse.csr_array]:
         """The lattice's nodes and matrix along x (`NoiseLattice.smoothing`)."""
         return self._lattice.smoothing(x, 0, period)
 
@@ -139,11 +139,11 @@ class GaussianRoughness(Surface):
 
     def _waves(self, x: Array, y: Array, grid: Grid) -> Array:
         """Periodic heights (m) of two lengths."""
-        torus = self._torus(grid)
-        scale = self.rms / math.sqrt(torus.mean_squares(self._amplitude)[0])
-        return scale * torus.field(self._amplitude, self.seed, x, y)
+        lattice = self._wave_lattice(grid)
+        scale = self.rms / math.sqrt(lattice.mean_squares(self._amplitude)[0])
+        return scale * lattice.field(self._amplitude, self.seed, x, y)
 
-    def _torus(self, grid: Grid) -> PeriodicLattice:
+    def _wave_lattice(self, grid: Grid) -> PeriodicLattice:
         along_x, along_y = (2.0 * math.pi / _REACH * length for length in self.ellipse.on_axes)
         return PeriodicLattice.holding(grid.lengths, (along_x, along_y), self._refused)
 

@@ -24,8 +24,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
@@ -64,7 +64,9 @@ class NoiseLattice:
         noise = white_noise(seed, nodes_x, nodes_y)
         return np.ascontiguousarray((smooth_y @ (smooth_x @ noise).T).T)
 
-    def _sheared(self, seed: int, x: Array, shift: Array, nodes_y: range, smooth_y: csr_array) -> Array:
+    def _sheared(
+        self, seed: int, x: Array, shift: Array, nodes_y: range, smooth_y: scipy.sparse.csr_array
+    ) -> Array:
         """The sum at ``x_i + shift_j``."""
         ends = np.array([x.min() + shift.min(), x.max() + shift.max()])
         nodes_x, _ = self.smoothing(ends, 0)
@@ -75,7 +77,9 @@ class NoiseLattice:
             z[:, j] = np.einsum("im,im->i", weight, row[node - nodes_x.start])
         return z
 
-    def smoothing(self, x: Array, axis: int, period: float | None = None) -> tuple[range, csr_array]:
+    def smoothing(
+        self, x: Array, axis: int, period: float | None = None
+    ) -> tuple[range, scipy.sparse.csr_array]:
         """Return the nodes that the sum needs along one axis of the sheared coordinates, and the kernel as a
         matrix S, ``(len(x), nodes)``.
 
@@ -85,7 +89,8 @@ class NoiseLattice:
         nodes = range(int(node.min()), int(node.max()) + 1)
         row = np.repeat(np.arange(len(x)), node.shape[1])
         entries = (weight.ravel(), (row, node.ravel() - nodes.start))
-        return nodes, csr_array(entries, shape=(len(x), len(nodes)))  # entries of one node add up
+        # entries of one node add up
+        return nodes, scipy.sparse.csr_array(entries, shape=(len(x), len(nodes)))
 
     def _kernel(self, x: Array, axis: int, period: float | None) -> tuple[NDArray[np.int64], Array]:
         """The nodes that each point sums over, and their weights."""

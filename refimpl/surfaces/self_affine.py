@@ -5,18 +5,19 @@ The two-dimensional PSD, ``<h^2> = (2 pi)^-2 int C d^2q``, is zero below ``q(lon
 (Persson, Albohr, Tartaglino, Volokitin and Tosatti 2005; Jacobs, Junge and Pastewka 2017). A lay makes it a
 function of ``sqrt(g^2 q_along^2 + q_across^2)``: the surface is stretched by g along the lay.
 
-Heights are a sum of waves of a torus with a normal number each (`refimpl.surfaces.waves`), so they are
+Heights are a sum of waves of a lattice with a normal number each (`refimpl.surfaces.waves`), so they are
 Gaussian. ``C dq_x dq_y / (2 pi)^2`` is a wave's mean square, up to one factor by which the given rms height
 or rms gradient holds exactly in the ensemble of the waves there are. The other one then differs from the
 integral's (`SelfAffineRoughness.rms`, `rms_gradient`) by the share of waves at the spectrum's ends.
 
-- Free surfaces: the torus is square in the sheared coordinates of the lay (`refimpl.surfaces.lay`), where the
-  spectrum is isotropic: another lay or anisotropy deforms the same realisation. Its period is ``long_cut``
-  times the least power of 2, at least 8, that makes it 4 times as long as the domain: far from the domain's.
-- Periodic surfaces: the torus is the domain.
+- Free surfaces: the lattice is square in the sheared coordinates of the lay (`refimpl.surfaces.lay`), where
+  the spectrum is isotropic: another lay or anisotropy deforms the same realisation. Its period is
+  ``long_cut`` times the least power of 2, at least 8, that makes it 4 times as long as the domain: far
+  from the domain's.
+- Periodic surfaces: the lattice is the domain.
 
 The noise belongs to wave numbers. Another Hurst exponent or roll-off changes amplitudes, a shorter
-``short_cut`` adds waves to those there are, and another ``long_cut`` has another torus.
+``short_cut`` adds waves to those there are, and another ``long_cut`` has another lattice.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from pathlib import Path
 from typing import Any, ClassVar, NoReturn
 
 import numpy as np
-from scipy.special import j0
+import scipy
 
 from refimpl.errors import InputError, require_number, require_size
 from refimpl.grid import Array, Grid
@@ -162,17 +163,17 @@ class SelfAffineRoughness(Surface):
         if self.long_cut < 2.0 * max(grid.spacings):
             need = f"at least two elements, {2.0 * max(grid.spacings):.3g} m: the grid holds no wave of it"
             raise InputError("long_cut", self.long_cut, need)
-        torus = self._torus(grid)
-        height, gradient = torus.mean_squares(self._amplitude)
+        lattice = self._wave_lattice(grid)
+        height, gradient = lattice.mean_squares(self._amplitude)
         if not height:
             need = "a spectrum that holds a wave of the periodic domain"
             raise InputError("short_cut", self.short_cut, need)
         present = math.sqrt(height if self.given == "rms" else gradient)
         size = self.rms if self.given == "rms" else self.rms_gradient
-        z = torus.field(self._amplitude, self.seed, grid.x + offset[0], grid.y + offset[1])
+        z = lattice.field(self._amplitude, self.seed, grid.x + offset[0], grid.y + offset[1])
         return np.asarray(z * (size / present))
 
-    def _torus(self, grid: Grid) -> PeriodicLattice:
+    def _wave_lattice(self, grid: Grid) -> PeriodicLattice:
         if grid.periodic:
             if self.long_cut > min(grid.lengths):
                 raise InputError("long_cut", self.long_cut, f"at most the period, {min(grid.lengths):.6g} m")
@@ -205,8 +206,10 @@ class SelfAffineRoughness(Surface):
         q, weight = self._quadrature(spacing)
         power, qh = weight * self._shape(q) * q**2, q * spacing
         slope, curvature = 0.5 * float(power @ q**2), 0.375 * float(power @ q**4)
-        seen = float(power @ (1.0 - j0(2.0 * qh))) / (2.0 * spacing**2)
-        bent = float(power @ (6.0 - 8.0 * j0(qh) + 2.0 * j0(2.0 * qh))) / spacing**4
+        seen = float(power @ (1.0 - scipy.special.j0(2.0 * qh))) / (2.0 * spacing**2)
+        bent = (
+            float(power @ (6.0 - 8.0 * scipy.special.j0(qh) + 2.0 * scipy.special.j0(2.0 * qh))) / spacing**4
+        )
         return 1.0 - math.sqrt(seen / slope), 1.0 - math.sqrt(bent / curvature)
 
     def _quadrature(self, spacing: float) -> tuple[Array, Array]:

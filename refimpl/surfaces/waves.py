@@ -24,10 +24,8 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.fft import ifft, irfft, next_fast_len
-from scipy.sparse import csr_array
-from scipy.special import i0e
 
 from refimpl.grid import Array
 from refimpl.surfaces.white_noise import white_noise
@@ -106,13 +104,15 @@ class PeriodicLattice:
             lines[:, self._across.astype(int) % M] = (
                 amplitude * weight_y * ((ahead + behind) - 1j * (ahead - behind))
             )
-            along_y = interpolate_y @ ifft(lines, axis=1, norm="forward").T
+            along_y = interpolate_y @ scipy.fft.ifft(lines, axis=1, norm="forward").T
             turn = 2.0 * math.pi * self.shear / self.periods[0] * np.outer(k, y)
             half[k.astype(int)] = along_y.T * np.exp(1j * turn) * _deconvolution(k, N)[:, None]
         half[1:] *= 0.5  # `irfft` adds the waves -k
         z = np.empty((len(x), len(y)))
         for j in range(0, len(y), _STRIP):
-            z[:, j : j + _STRIP] = interpolate_x @ irfft(half[:, j : j + _STRIP], N, axis=0, norm="forward")
+            z[:, j : j + _STRIP] = interpolate_x @ scipy.fft.irfft(
+                half[:, j : j + _STRIP], N, axis=0, norm="forward"
+            )
         return z
 
     @property
@@ -139,15 +139,15 @@ def rotated(qx: Array, qy: Array, lay: float) -> tuple[Array, Array]:
     return qx * cosine + qy * sine, qy * cosine - qx * sine
 
 
-def _interpolation(turns: Array, waves: int) -> tuple[int, csr_array]:
+def _interpolation(turns: Array, waves: int) -> tuple[int, scipy.sparse.csr_array]:
     """Points of the period, and the matrix that interpolates from them at positions in periods."""
-    N = 2 * next_fast_len(2 * waves + 1 + _WIDTH, real=True)
+    N = 2 * scipy.fft.next_fast_len(2 * waves + 1 + _WIDTH, real=True)
     position = (turns - np.floor(turns)) * N
     point = np.floor(position).astype(np.int64)[:, None] + np.arange(1 - _WIDTH // 2, 1 + _WIDTH // 2)
     root = np.sqrt(np.maximum(1.0 - ((position[:, None] - point) * (2.0 / _WIDTH)) ** 2, 0.0))
-    weight = i0e(_SHAPE * root) * np.exp(_SHAPE * (root - 1.0))  # exp(-_SHAPE) I0
+    weight = scipy.special.i0e(_SHAPE * root) * np.exp(_SHAPE * (root - 1.0))  # exp(-_SHAPE) I0
     entries = (weight.ravel(), (np.repeat(np.arange(len(turns)), _WIDTH), point.ravel() % N))
-    return N, csr_array(entries, shape=(len(turns), N))
+    return N, scipy.sparse.csr_array(entries, shape=(len(turns), N))
 
 
 def _deconvolution(wave: Array, N: int) -> Array:

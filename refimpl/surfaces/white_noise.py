@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.special import ndtri
 
 from refimpl.grid import Array
 
@@ -28,7 +28,7 @@ def white_noise(seed: int, rows: range, columns: range, stream: int = STREAM) ->
         for q in range(columns.start // _TILE, (columns.stop - 1) // _TILE + 1):
             here_i, tile_i = _overlap(rows, p)
             here_j, tile_j = _overlap(columns, q)
-            noise[here_i, here_j] = ndtri(_uniform_tile(seed, stream, p, q)[tile_i, tile_j])
+            noise[here_i, here_j] = scipy.special.ndtri(_uniform_tile(seed, stream, p, q)[tile_i, tile_j])
     return noise
 
 

@@ -85,7 +85,7 @@ def _counted(items: Sequence[Judged]) -> str:
     return (
         f"Of {len(items)} statements of the paper (Karpenko and Akay 2001, text converted by machine): "
         f"{listed}. "
-        "Confirmed ones, definitions and schematic drawings are in the report (`make report`)."
+        "The others are in the report (`make report`)."
     )
 
 

@@ -59,7 +59,7 @@ def test_every_pattern_of_the_paper_finds_a_case() -> None:
         for pattern in claim.evidence:
             assert any(fnmatchcase(id, pattern) for id in known), (claim.label, pattern)
         for id, _ in fields(claim.finding):
-            assert id in known or f"{id}-full" in known, (claim.label, id)
+            assert id.startswith("numbers/") or id in known or f"{id}-full" in known, (claim.label, id)
 
 
 def test_no_claim_holds_on_missing_or_failed_evidence() -> None:
@@ -88,7 +88,7 @@ def test_a_verdict_of_the_matrix_is_not_milder_than_its_cases() -> None:
 
 def test_the_matrix_has_known_verdicts_and_parts_and_one_row_a_label() -> None:
     claims = paper()
-    assert {claim.verdict for claim in claims} <= set(VERDICTS[1:])
+    assert {claim.verdict for claim in claims if claim.evidence} <= set(VERDICTS[1:])
     assert {claim.part for claim in claims} <= {part.name for part in parts()} | {""}
     labels = [claim.label for claim in claims]
     assert len(labels) == len(set(labels))

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from reports import findings
-from reports.agreement import Number, bias_and_scatter, by_quantity, fine, numbers
+from reports.agreement import Number, as_cases, by_quantity, fine, numbers, ratio_and_scatter
 from reports.findings import MISSING, by_claim, filled
 from reports.front_page import front_page
 from tests.reports.sample import case
@@ -45,13 +45,30 @@ def test_a_scatter_of_75_surfaces_is_known_to_a_sixth() -> None:
     found = [n for n in numbers(CASES) if n.quantity == "scatter of μ"]
     assert [n.computed for n in found] == pytest.approx([1.1, 2.0, 3.0])
     assert [n.half_width for n in found] == pytest.approx([0.1808, 0.3288, 0.4932], rel=1e-3)
+    assert [n.uncertainty for n in found] == pytest.approx(
+        [0.2605, 0.4677, 0.6993], rel=1e-3
+    )  # both ensembles
     assert [n.within for n in found] == [True, False, False]  # 1.0 is printed, to a tenth
+    said = as_cases(found)["numbers/scatter of μ"]["data"]
+    assert said == {"numbers": 3, "beyond u": 2, "largest difference": pytest.approx(2.0)}
     assert list(by_quantity(numbers(CASES))) == ["scatter of μ", "A, Table 3"]
 
 
-def test_bias_and_scatter_of_one_number() -> None:
+def test_the_ratio_of_one_number_has_no_scatter() -> None:
     (one,) = [n for n in numbers(CASES) if n.label == "σ_e 1.68 µm, 512²"]
-    assert bias_and_scatter([one]) == (pytest.approx(math.log(0.95)), None)
+    assert ratio_and_scatter([one]) == (pytest.approx(0.95), None)
+
+
+def test_pressures_of_table_3_are_printed_with_three_digits() -> None:
+    """1.64 and 19.1 tenths of a GPa: half a unit of the last digit is 0.0005 and 0.005 GPa."""
+    row = {
+        "sigma_e (um)": [0.0, 0.0],
+        "mesh": [512, 512],
+        "printed": [0.164e9, 1.91e9],
+        "ours": [0.166e9, 1.9e9],
+    }
+    found = numbers({"reproduction/table3-peak": case("a/1", data=row | {"half width 95 %": [0.0, 0.0]})})
+    assert [n.uncertainty for n in found] == pytest.approx([0.0005, 0.005])
 
 
 MADE = case(
@@ -119,12 +136,14 @@ def test_the_first_page_by_hand() -> None:
         case("hertz/approach", value=2.5e-6, reference=2.4e-6, unit="m"),
         case("hertz/peak-pressure", "error"),
     ]
-    found = front_page(SimpleNamespace(cases=cases, studies=STUDIES), [], NUMBERS)  # type: ignore[arg-type]
-    assert (found.beyond, found.beyond_sampling, round(found.largest_difference, 9)) == (1, 2, 10.0)
+    errata = [{"equation": "A5"}, {"equation": "A1"}]
+    evidence: Any = SimpleNamespace(cases=cases, studies=STUDIES, errata=errata)
+    found = front_page(evidence, [], NUMBERS)
+    assert (found.beyond, found.worst, found.conversion) == (1, [NUMBERS[0]], 1)
     assert found.table3_rows == {"μ": NUMBERS[:1], "A (mm²)": NUMBERS[1:2]}
     assert found.roughness == ["1.68 µm", "0 µm"]
     assert found.hertz == ["approach 2.5 for 2.4 µm (4.2e-02)"]
-    assert found.quantities == [("μ, Table 3", 1, "+9.5 %", "", 0), ("A, Table 3", 1, "+0.1 %", "", 1)]
+    assert found.quantities == [("μ, Table 3", 1, "1.100", "", 0), ("A, Table 3", 1, "1.001", "", 1)]
     bars, extremes = found.trust
     for text in ("μ in 90 % (1.2 times the error)", "A in 91 % (2.2 times", "p_max in 92 % (3.2 times"):
         assert text in bars

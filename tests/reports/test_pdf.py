@@ -48,7 +48,7 @@ def test_the_pdf_is_small_tagged_and_has_an_outline_and_contents(path: Path, pap
         assert root.MarkInfo.Marked
         assert "/StructTreeRoot" in root
         assert str(root.Lang) == "en"
-        assert str(document.docinfo.Title).startswith("Validation report")
+        assert str(document.docinfo.Title).startswith("Verification and replication report")
         assert entries(root.Outlines) > 30
         assert {tuple(round(float(x)) for x in page.mediabox[2:]) for page in document.pages} == {
             POINTS[paper]

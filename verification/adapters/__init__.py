@@ -6,5 +6,5 @@ units and signs.
 """
 
 NAMES = ("tamaas", "contactmechanics", "aspher", "slippy")
-PEERS = {name: f"verification.adapters.{name}:solve" for name in NAMES}
+PUBLISHED = {name: f"verification.adapters.{name}:solve" for name in NAMES}
 """Solvers under test by their short names."""

@@ -15,14 +15,14 @@ from functools import partial
 
 import numpy as np
 
-from verification.adapters.published_code import Peer, PeerAnswer, closure, imported
+from verification.adapters.published_code import PublishedAnswer, PublishedCode, closure, imported
 from verification.solver_suite.protocol import Abilities, ContactProblem
 
 _COARSEST = 64  # its own default
 _ITERATIONS = 5000
 
 
-def press(problem: ContactProblem, **options: str) -> PeerAnswer:
+def press(problem: ContactProblem, **options: str) -> PublishedAnswer:
     """Pressures of ``solve_nested`` with its ``options``, or of ``ContactSolver`` where M is not 64 2^k.
 
     Its Frank-Wolfe error is the mean gap under the pressure over the range of the gap, and over one unit of
@@ -46,7 +46,7 @@ def press(problem: ContactProblem, **options: str) -> PeerAnswer:
         found = hc.ContactSolver(problem.M, **common).solve(gap, precond="fourier", **stop)
     pressure = E * np.array(found.pressure, dtype=np.float64).reshape(problem.gap.shape)
     work = {"displacements": int(found.matvec_count), "preconditionings": int(found.precond_count)}
-    return PeerAnswer(pressure, str(found.status) == "converged", operations=work)
+    return PublishedAnswer(pressure, str(found.status) == "converged", operations=work)
 
 
 def _halves(M: int) -> bool:
@@ -55,7 +55,7 @@ def _halves(M: int) -> bool:
     return rest == 0 and levels > 0 and levels & (levels - 1) == 0
 
 
-solve = Peer(
+solve = PublishedCode(
     distribution="aspher",
     extra="aspher",
     setup="solve_nested from 64 x 64 with backend 'fft' or 'periodic', double precision, its other defaults",

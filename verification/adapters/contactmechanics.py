@@ -19,13 +19,13 @@ from typing import Any
 
 import numpy as np
 
-from verification.adapters.published_code import Peer, PeerAnswer, closure, imported
+from verification.adapters.published_code import PublishedAnswer, PublishedCode, closure, imported
 from verification.solver_suite.protocol import Abilities, ContactProblem, Unsupported
 
 _ITERATIONS = 5000
 
 
-def press(problem: ContactProblem, *, mean_stiffness: float | None = None) -> PeerAnswer:
+def press(problem: ContactProblem, *, mean_stiffness: float | None = None) -> PublishedAnswer:
     """Pressures on the periodic or free half-space, under a load or at an offset.
 
     ``mean_stiffness`` is ``stiffness_q0`` under a load; zero gives the negative control.
@@ -54,7 +54,7 @@ def press(problem: ContactProblem, *, mean_stiffness: float | None = None) -> Pe
         )
         force, work = found.x, 2 * int(found.nit)
     pressure = np.array(force).reshape(problem.gap.shape) / problem.element_area
-    return PeerAnswer(pressure, bool(found.success), operations={"displacements": work})
+    return PublishedAnswer(pressure, bool(found.success), operations={"displacements": work})
 
 
 def _half_space(package: ModuleType, problem: ContactProblem, mean_stiffness: float | None) -> Any:
@@ -81,7 +81,7 @@ def _tolerances(problem: ContactProblem) -> dict[str, float]:
     }
 
 
-solve = Peer(
+solve = PublishedCode(
     distribution="ContactMechanics",
     extra="contactmechanics",
     setup="NonSmoothContactSystem on the periodic or free FFT half-space: minimize_proxy under a load, "

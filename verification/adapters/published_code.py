@@ -16,14 +16,14 @@ from verification.solver_suite.protocol import Abilities, Answer, ContactProblem
 
 
 @dataclass(frozen=True, eq=False)
-class PeerAnswer(Answer):
+class PublishedAnswer(Answer):
     """An answer with the operations that the peer says it took, by its own names."""
 
     operations: Mapping[str, int] = field(default_factory=dict, kw_only=True)
 
 
 @dataclass(frozen=True)
-class Peer:
+class PublishedCode:
     """A published solver under test.
 
     distribution : its name on the package index
@@ -38,7 +38,7 @@ class Peer:
     extra: str
     setup: str
     abilities: Abilities
-    press: Callable[[ContactProblem], PeerAnswer]
+    press: Callable[[ContactProblem], PublishedAnswer]
     needs: str = ""
     wrong: str = ""
 
@@ -46,7 +46,8 @@ class Peer:
     def installation(self) -> str:
         """Return the command that installs the peer in a checkout of this project.
 
-        >>> Peer("tamaas", "tamaas", "", Abilities(), lambda problem: PeerAnswer([], True)).installation
+        >>> never = lambda problem: PublishedAnswer([], True)
+        >>> PublishedCode("tamaas", "tamaas", "", Abilities(), never).installation
         "pip install -c constraints.txt -e '.[tamaas]' in a checkout"
         """
         command = f"pip install -c constraints.txt -e '.[{self.extra}]' in a checkout" if self.extra else ""
@@ -70,7 +71,7 @@ class Peer:
         """Checksum of the installed distribution, or None."""
         return identity.of_distribution(self.distribution)
 
-    def __call__(self, problem: ContactProblem) -> PeerAnswer:
+    def __call__(self, problem: ContactProblem) -> PublishedAnswer:
         """The peer's answer.
 
         Raises `Unavailable` where the peer is not installed and `Unsupported` where it cannot pose the

@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
 
-from verification.adapters.published_code import Peer, PeerAnswer
+from verification.adapters.published_code import PublishedAnswer, PublishedCode
 from verification.solver_suite.command import Command
 from verification.solver_suite.protocol import Abilities, ContactProblem
 
@@ -45,7 +45,7 @@ def version_of(interpreter: str) -> str | None:
 
 
 @dataclass(frozen=True)
-class Elsewhere(Peer):
+class Elsewhere(PublishedCode):
     """A peer that another interpreter has."""
 
     @property
@@ -55,11 +55,11 @@ class Elsewhere(Peer):
         return version_of(interpreter) if interpreter else None
 
 
-def press(problem: ContactProblem, *, option: str = "") -> PeerAnswer:
+def press(problem: ContactProblem, *, option: str = "") -> PublishedAnswer:
     """Pressures of the program; ``option`` is ``--frequency`` for SlipPY's default in free space."""
     words = [os.environ[INTERPRETER], str(PROGRAM), *shlex.split(option)]
     answer = Command(tuple(words), ABILITIES, SECONDS)(problem)
-    return PeerAnswer(answer.pressure, answer.converged)
+    return PublishedAnswer(answer.pressure, answer.converged)
 
 
 solve = Elsewhere(

@@ -18,7 +18,7 @@ import numpy as np
 
 from refimpl.grid import Array
 from verification.adapters import aspher, contactmechanics, negative_controls, slippy, tamaas
-from verification.adapters.published_code import Peer
+from verification.adapters.published_code import PublishedCode
 from verification.framework.case import Metric, Result, Status, jsonable
 from verification.framework.files import Progress, write_result
 from verification.framework.provenance import provenance
@@ -26,7 +26,7 @@ from verification.solver_suite import own, reference_solution
 from verification.solver_suite.protocol import Abilities, Answer, ContactProblem, abilities_of
 from verification.solver_suite.suite import identity, suite
 
-Solver = Peer | own.Own
+Solver = PublishedCode | own.Own
 ENTRANTS: dict[str, Solver] = {
     "refimpl": own.solve,
     "refimpl, dense": own.dense,

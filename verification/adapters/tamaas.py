@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from verification.adapters.published_code import Peer, PeerAnswer, closure, imported
+from verification.adapters.published_code import PublishedAnswer, PublishedCode, closure, imported
 from verification.solver_suite.protocol import Abilities, ContactProblem, Unsupported
 
 _FREE_SPACE = "dcfft"
@@ -29,7 +29,7 @@ _GAP_FORMULATION = 0.3
 """Its pressures are a by-product: they miss the approach, which its error does not see, by a third more."""
 
 
-def press(problem: ContactProblem, *, second_step: bool = True) -> PeerAnswer:
+def press(problem: ContactProblem, *, second_step: bool = True) -> PublishedAnswer:
     """Pressures of the Polonsky-Keer solver. Its error is the mean gap under the pressure over std(heights).
 
     Loads are mean pressures. A periodic approach is minus the mean gap, which the same solver takes as
@@ -61,10 +61,10 @@ def press(problem: ContactProblem, *, second_step: bool = True) -> PeerAnswer:
     if problem.approach is not None:
         # the gap formulation leaves rounding where the gap is open; contact is where it is exactly closed
         pressure[np.asarray(model["gap"]) > 0] = 0.0
-    return PeerAnswer(pressure, bool(error <= tolerance))
+    return PublishedAnswer(pressure, bool(error <= tolerance))
 
 
-def _saturated(problem: ContactProblem, unit: float) -> PeerAnswer:
+def _saturated(problem: ContactProblem, unit: float) -> PublishedAnswer:
     """Pressures up to the hardness; ``unit`` (Pa) is that of moduli and pressures: E* to be right.
 
     Raises `Unsupported` for an approach: the solver takes loads.
@@ -81,10 +81,10 @@ def _saturated(problem: ContactProblem, unit: float) -> PeerAnswer:
         tm.ModelFactory.registerNonPeriodic(model, _FREE_SPACE)
         solver.setIntegralOperator(_FREE_SPACE)
     error = solver.solve(problem.load / problem.area / unit)
-    return PeerAnswer(np.array(model.traction) * unit, bool(error <= _SATURATED_TOLERANCE))
+    return PublishedAnswer(np.array(model.traction) * unit, bool(error <= _SATURATED_TOLERANCE))
 
 
-solve = Peer(
+solve = PublishedCode(
     distribution="tamaas",
     extra="tamaas",
     setup="PolonskyKeerRey, or KatoSaturated in units of E*, on a basic_2d model; in free space by "

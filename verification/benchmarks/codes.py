@@ -21,14 +21,14 @@ from refimpl.operators.fft import Counter
 from refimpl.scene.discretise import discretise
 from refimpl.solvers.production.nested_solver import solve_fft
 from verification.adapters import aspher, contactmechanics, tamaas
-from verification.adapters.published_code import Peer
+from verification.adapters.published_code import PublishedCode
 from verification.benchmarks.problems import FRICTION, problem, scene
 from verification.framework.provenance import DISTRIBUTION, versions
 
 OWN = "refimpl"
 ALONE = f"{OWN}-solver"
 SHEARED, SLOPED = f"{OWN}+friction", f"{OWN}+friction+slopes"
-PEERS = {
+PUBLISHED = {
     "tamaas": tamaas.solve,
     "ContactMechanics": contactmechanics.solve,
     "aspher": aspher.solve,
@@ -61,11 +61,11 @@ class Code:
     ready: Callable[[str, int, float], Callable[[], Pressed]]
 
 
-def _peer(peer: Peer, kind: str, M: int, tolerance: float) -> Callable[[], Pressed]:
+def _published(code: PublishedCode, kind: str, M: int, tolerance: float) -> Callable[[], Pressed]:
     posed = problem(kind, M, tolerance)
 
     def press() -> Pressed:
-        answer = peer(posed)
+        answer = code(posed)
         return Pressed(np.asarray(answer.pressure), bool(answer.converged), answer.operations)
 
     return press
@@ -109,6 +109,6 @@ def codes() -> dict[str, Code]:
     settings = {OWN: (rf.Friction(), False), SHEARED: (FRICTION, False), SLOPED: (FRICTION, True)}
     found = {name: Code(name, own, partial(_own, *setting)) for name, setting in settings.items()}
     found[ALONE] = Code(ALONE, own, _alone)
-    for name, peer in PEERS.items():
-        found[name] = Code(name, peer.version if peer.installed else None, partial(_peer, peer))
+    for name, code in PUBLISHED.items():
+        found[name] = Code(name, code.version if code.installed else None, partial(_published, code))
     return found

@@ -15,12 +15,12 @@ from typing import NoReturn
 
 from verification.cli import (
     appendix_a,
-    contestant,
     identify,
     inspect,
     keys,
     report,
     solve,
+    suite_run,
     sweep,
     tradeoff,
     verify,
@@ -55,9 +55,9 @@ COMMANDS = (
      "Print the keys of scene and study files, or write them as a page."),
     (verify, "run the verification cases",
      "Run the verification cases. A case that could not run is never a pass."),
-    (report, "make the validation report",
-     "Make the validation report, one HTML file, from a result file of 'verify' and the\n"
-     "committed results of long cases and studies."),
+    (report, "make the report of verification and replication",
+     "Make the report of verification and replication, one HTML file, from a result file of 'verify' and\n"
+     "the committed results of long cases and studies."),
     (sweep, "solve the runs of a study: realisations x roughness x load x direction x grid",
      "Solve the runs of a study in worker processes, resumably, and export the table."),
     (tradeoff, TRADEOFF, f"Print {TRADEOFF}."),
@@ -90,7 +90,7 @@ def parser() -> argparse.ArgumentParser:
         texts = {"help": text, "description": about, "epilog": module.EPILOG}
         made = subcommand(commands, name, module.run, module.OPTIONS, one_of, **texts)
         if module is verify:
-            contestant.add_options(made)
+            suite_run.add_options(made)
     appendix_a.add_parser(commands)
     return top
 

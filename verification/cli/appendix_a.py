@@ -109,12 +109,12 @@ def strip(options: argparse.Namespace) -> int:
 
     with _by_option():
         wavy, flat = first_order(*_wave(options), offsets=options.offsets)
-    caution = appendix_tables.first_order_caution(*_wave(options))
+    note = appendix_tables.first_order_note(*_wave(options))
     document = {
-        "offsets": options.offsets, "wavy": wavy.tolist(), "flat": flat.tolist(), "caution": caution,
+        "offsets": options.offsets, "wavy": wavy.tolist(), "flat": flat.tolist(), "caution": note,
     }  # fmt: skip
-    remark = "to first order in the slope" + (f"\n{caution}" if caution else "")
-    emit(document, options.json, _displacements(document, remark))
+    scope = "to first order in the slope" + (f"\n{note}" if note else "")
+    emit(document, options.json, _displacements(document, scope))
     return 0
 
 

@@ -103,7 +103,7 @@ def _upper(options: argparse.Namespace) -> tuple[float, float] | None:
     return options.upper_E, options.upper_nu
 
 
-def first_order_caution(slope_deg: float, wavelength: float, position: float, nu: float) -> str:
+def first_order_note(slope_deg: float, wavelength: float, position: float, nu: float) -> str:
     """Return what the first order misses of the next elements' coefficients; empty where that is little.
 
     By the shipped map: its part beyond the first order, in percentage points of the flat coefficient.

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli import contestant, export
+from verification.cli import export, suite_run
 from verification.cli.options import Options, option
 from verification.cli.output import check_workers, columns, emit, judgement, refusal, select_or_refuse
 
@@ -49,8 +49,8 @@ def run(options: argparse.Namespace) -> int:
         if options.solver or options.exec or options.self_test or options.list:
             raise refusal("--export", str(options.export), "no other action beside it")
         return export.run(options)
-    if contestant.chosen(options):
-        return contestant.run(options)
+    if suite_run.chosen(options):
+        return suite_run.run(options)
     if options.self_test:
         options.tier, options.only = "full", options.only or [SELF_TEST]
     tier, only = Tier(options.tier), options.only

@@ -65,7 +65,7 @@ def periodic_translation(solver: Solver, sample: Sample) -> None:
 
 ROUNDED = Sample(
     bumps=((12, 0, 0, 10, 0), (0, 8, 0, 14, 0), (12, 8, 0, 10, 0), (0, 0, 9, 0, 0), (0, 13, 0, 0, 13)),
-    bowl=3,
+    upper=3,
     E=(156, 114),
     nu=(-17, -16),
     pressure=100,

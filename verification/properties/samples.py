@@ -25,7 +25,7 @@ HEIGHT = SIDE / 2**13
 class Sample:
     """A scene in whole numbers on a rectangle; its grid's ``shape`` is that of ``bumps``.
 
-    ``bumps`` heights of the lower surface and ``bowl`` height of the upper paraboloid at the middle of the
+    ``bumps`` heights of the lower surface and ``upper`` height of the upper paraboloid at the middle of the
     edges (`HEIGHT`); ``E`` (GPa) and ``nu`` (%) of the lower and the upper body; ``pressure`` load over the
     domain (1e-5 E*); ``tau`` (% of that), ``beta`` (%); ``angle`` of sliding (degrees); ``stretch`` of
     elements along y, ``4 dy/dx``.
@@ -35,7 +35,7 @@ class Sample:
     """
 
     bumps: tuple[tuple[int, ...], ...]
-    bowl: int = 0
+    upper: int = 0
     E: tuple[int, int] = (1, 1)
     nu: tuple[int, int] = (0, 0)
     pressure: int = 1
@@ -61,12 +61,12 @@ class Sample:
         """The scene, its surfaces as arrays of the grid's shape."""
         lower, upper = (rf.Material(E * 1e9, nu / 100) for E, nu in zip(self.E, self.nu, strict=True))
         x, y = ((2 * np.arange(n) + 1 - n) / n for n in self.shape)
-        bowl = self.bowl * HEIGHT * (x[:, None] ** 2 + y[None, :] ** 2)
+        heights = self.upper * HEIGHT * (x[:, None] ** 2 + y[None, :] ** 2)
         compliance = 1 / lower.plane_strain_modulus + 1 / upper.plane_strain_modulus
         nominal = self.pressure * 1e-5 / compliance
         lengths = self.grid.lengths
         return rf.Scene(
-            upper=array_body(upper, bowl, lengths),
+            upper=array_body(upper, heights, lengths),
             lower=array_body(lower, np.array(self.bumps, dtype=float) * HEIGHT, lengths),
             friction=rf.Friction(tau=self.tau / 100 * nominal, beta=self.beta / 100),
             load=nominal * self.grid.nominal_area,
@@ -123,7 +123,7 @@ def samples(
     moduli, ratios = st.integers(1, 200), st.integers(-40, 50)
     sample = Sample(
         bumps=bumps,
-        bowl=draw(st.integers(0, 60)),
+        upper=draw(st.integers(0, 60)),
         E=(draw(moduli), draw(moduli)),
         nu=(draw(ratios), draw(ratios)),
         pressure=draw(st.integers(1, 100)),

@@ -141,7 +141,7 @@ def determinism(solver: Solver, sample: Sample) -> None:
 
 ONE_SPOT = Sample(
     bumps=((0, 0, 0, 0, 0), (15, 0, 0, 0, 14), (4, 0, 2, 7, 0), (4, 7, 2, 7, 0), (0, 0, 0, 0, 0)),
-    bowl=5,
+    upper=5,
     E=(71, 73),
     nu=(15, 0),
     pressure=3,

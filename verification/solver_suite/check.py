@@ -12,7 +12,7 @@ import numpy as np
 from refimpl.grid import Array
 from verification.framework.case import Case, Measured, Metric
 from verification.solver_suite import numbers, reference_solution
-from verification.solver_suite.protocol import ContactProblem, Contestant, Coupling, abilities_of, ask
+from verification.solver_suite.protocol import ContactProblem, Coupling, SolverUnderTest, abilities_of, ask
 
 MODULUS = 2e9
 """Reduced modulus E* (Pa) of the suite's problems."""
@@ -97,12 +97,12 @@ class Pressed:
 class Entrant:
     """A solver under test at work: poses problems and holds the solver to its claim."""
 
-    contestant: Contestant
+    solver: SolverUnderTest
 
     @property
     def claim(self) -> float:
         """The relative residual that it is held to."""
-        return abilities_of(self.contestant).precision
+        return abilities_of(self.solver).precision
 
     def press(
         self,
@@ -142,7 +142,7 @@ class Entrant:
 
     def pose(self, problem: ContactProblem) -> Pressed:
         """Pose a problem. Raises what `ask` raises, and `Disproved` for numbers other than its pressures'."""
-        answer = ask(self.contestant, problem)
+        answer = ask(self.solver, problem)
         numbers.require(problem, answer)
         return Pressed(problem, np.asarray(answer.pressure))
 
@@ -221,7 +221,7 @@ class Check:
         """The claim, and what the case is meant to catch."""
         return f"{self.claim}. Meant to catch: {', '.join(self.catches) or 'no single fault'}"
 
-    def case(self, contestant: Contestant) -> Case:
+    def case(self, solver: SolverUnderTest) -> Case:
         """Return the verification case of this solver."""
         return Case(
             id=self.id,
@@ -231,5 +231,5 @@ class Check:
             metric=self.metric,
             tolerance=self.tolerance,
             tolerance_reason=self.tolerance_reason,
-            function=lambda: self.judge(Entrant(contestant)),
+            function=lambda: self.judge(Entrant(solver)),
         )

@@ -84,7 +84,7 @@ class Command:
             raise InputError("--exec", line, "a command whose first word is a program that can be run")
         return cls(words, abilities, timeout)
 
-    def contestant(self) -> Command:
+    def solver(self) -> Command:
         """Itself: a source for `verification.solver_suite.isolated`."""
         return self
 

@@ -56,8 +56,8 @@ def of_distribution(name: str) -> str | None:
     return hashlib.sha256(record.encode()).hexdigest()[:DIGITS] if record else None
 
 
-def of_peer(name: str) -> dict[str, str | None]:
+def of_published_code(name: str) -> dict[str, str | None]:
     """Identity of a published code by its adapter, ``module:attribute``: of the code, not of the adapter."""
     module, _, attribute = name.partition(":")
-    peer: Any = getattr(importlib.import_module(module), attribute)
-    return {"name": name, "version": peer.version, "checksum": peer.checksum}
+    code: Any = getattr(importlib.import_module(module), attribute)
+    return {"name": name, "version": code.version, "checksum": code.checksum}

@@ -35,7 +35,7 @@ from verification.solver_suite.protocol import (
     Abilities,
     Answer,
     ContactProblem,
-    Contestant,
+    SolverUnderTest,
     abilities_of,
 )
 from verification.solver_suite.suite import select
@@ -56,7 +56,7 @@ class Named:
     name: str
     stated: Mapping[str, Any] = field(default_factory=dict)
 
-    def contestant(self) -> Contestant:
+    def solver(self) -> SolverUnderTest:
         """Import the object. Raises `InputError` where that fails, and where it cannot be called."""
         module, _, attribute = self.name.partition(":")
         allowed = "package.module:function, importable from here"
@@ -80,7 +80,7 @@ class Named:
 class Limited:
     """A solver under test with other abilities than its own attribute states."""
 
-    solver: Contestant
+    solver: SolverUnderTest
     abilities: Abilities
 
     def __call__(self, problem: ContactProblem) -> Answer | Array:

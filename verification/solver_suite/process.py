@@ -29,9 +29,9 @@ import psutil
 
 from refimpl.errors import InputError
 from verification.framework.case import Unavailable, readable
-from verification.solver_suite.protocol import NUMBERS, Contestant, abilities_of, ask
+from verification.solver_suite.protocol import NUMBERS, SolverUnderTest, abilities_of, ask
 
-Source = Callable[[], Contestant]
+Source = Callable[[], SolverUnderTest]
 """Factory of the solver under test, called in the process that will run the solver; picklable."""
 PATIENCE = 1.0
 """Seconds to end what was started and to remove its files, once SIGTERM has come."""
@@ -178,8 +178,8 @@ def _end_with_parent() -> None:
 def _answer(judge: socket.socket, source: Source) -> None:
     served_by = os.getpid()
     try:
-        contestant = source()
-        ready = {"kind": "ready", "abilities": asdict(abilities_of(contestant))}
+        solver = source()
+        ready = {"kind": "ready", "abilities": asdict(abilities_of(solver))}
     except InputError as refused:
         value = readable(refused.value if isinstance(refused.value, str) else repr(refused.value))
         send(judge, {"kind": "refused", "field": refused.field, "allowed": refused.allowed, "value": value})
@@ -188,16 +188,16 @@ def _answer(judge: socket.socket, source: Source) -> None:
     while True:
         header, body = receive(judge)
         problem = pickle.loads(body)  # from the judge, who is trusted here
-        reply, pressure = _posed(contestant, problem)
+        reply, pressure = _posed(solver, problem)
         if os.getpid() != served_by:  # the solver forked, and let its child return: one answer is enough
             os._exit(1)
         send(judge, {"number": header["number"], **reply}, pressure)
 
 
-def _posed(contestant: Contestant, problem: Any) -> tuple[dict[str, Any], bytes]:
+def _posed(solver: SolverUnderTest, problem: Any) -> tuple[dict[str, Any], bytes]:
     """Header and body of the reply: checked numbers and pressures, or why there are none."""
     try:
-        answer = ask(contestant, problem)
+        answer = ask(solver, problem)
     except Unavailable as missing:
         return {"kind": "unavailable", "note": readable(str(missing))}, b""
     except (Exception, SystemExit) as failure:  # a solver may do anything

@@ -165,6 +165,14 @@ class ContactProblem:
         return self.spacings[0] * self.spacings[1]
 
     @property
+    def coupling_strength(self) -> float:
+        """``pi |c0| E* beta``: the largest change of pressures by a step that lags friction, over that of the
+        step before. Such steps converge below 1, slowly near it; tau's contact edge is not counted."""
+        if self.coupling is None:
+            return 0.0
+        return math.pi * abs(self.coupling.shear_compliance) * self.reduced_modulus * self.coupling.beta
+
+    @property
     def approach_from_touch(self) -> float | None:
         """The prescribed approach counted from first contact, periodic or not (m); None under a load."""
         if self.approach is None or not self.periodic:
@@ -207,6 +215,7 @@ class Abilities:
     largest : most elements along the longer axis that it should be given (None: any)
     precision : the relative residual that it claims to reach, at most 1e-6: the suite's problems have it as
         their tolerance, and the solver is held to it
+    strongest : largest `ContactProblem.coupling_strength` that it should be given (None: any)
     """
 
     periodic: bool = True
@@ -219,6 +228,7 @@ class Abilities:
     rectangle: bool = False
     oblong_elements: bool = False
     hardness: bool = False
+    strongest: float | None = None
 
     def __post_init__(self) -> None:
         for flag in FLAGS:
@@ -226,6 +236,8 @@ class Abilities:
                 raise InputError(f"abilities.{flag}", getattr(self, flag), "true or false")
         if self.largest is not None and not (type(self.largest) is int and self.largest >= 1):
             raise InputError("abilities.largest", self.largest, "a number of elements per side, or None")
+        if self.strongest is not None:
+            require_number("abilities.strongest", self.strongest, "at least 0, or None", at_least=0)
         require_number(
             "abilities.precision",
             self.precision,
@@ -276,19 +288,21 @@ class Abilities:
                 return name.replace("_", " ")
         if self.largest is not None and self.largest < problem.M:
             return f"{problem.M} elements along one axis"
+        if self.strongest is not None and self.strongest < problem.coupling_strength:
+            return f"coupling of strength {problem.coupling_strength:.3g}"
         return None
 
 
-Contestant = Callable[[ContactProblem], "Answer | Array"]
+SolverUnderTest = Callable[[ContactProblem], "Answer | Array"]
 """A bare array is an answer that claims success. Optional attributes: ``abilities``, ``version`` (a text)."""
 
 
-def abilities_of(contestant: Contestant) -> Abilities:
+def abilities_of(solver: SolverUnderTest) -> Abilities:
     """Its ``abilities`` attribute, or the defaults: squares of any size, without coupling.
 
     Raises `InputError` when the attribute is no `Abilities`.
     """
-    found = getattr(contestant, "abilities", None)
+    found = getattr(solver, "abilities", None)
     if found is None:
         return Abilities()
     if not isinstance(found, Abilities):
@@ -301,22 +315,27 @@ HIGHEST = 1e50
 EXPECTED = "expected an array of real numbers, or Answer(pressure, converged) with one"
 
 
-def ask(contestant: Contestant, problem: ContactProblem) -> Answer:
+def ask(solver: SolverUnderTest, problem: ContactProblem) -> Answer:
     """Return the claimed answer of a solver under test, checked; its pressures ``(M, M)`` (Pa) are an array.
 
-    The solver gets a copy of the problem. Raises `Unsupported` where its abilities do not reach,
-    `BadAnswer` for an answer that cannot be judged or admits failure, and every exception of the solver.
+    The solver gets a copy of the problem. Raises `Unsupported` where its abilities do not reach, or where it
+    says that it did not converge with coupling: a correct solver that lags friction may not. Raises
+    `BadAnswer` for an answer that cannot be judged or admits another failure, and every exception of the
+    solver.
     """
-    lacking = abilities_of(contestant).lacking(problem)
+    lacking = abilities_of(solver).lacking(problem)
     if lacking:
         raise Unsupported(f"the solver does not offer: {lacking}")
-    answer = contestant(replace(problem, gap=problem.gap))
+    answer = solver(replace(problem, gap=problem.gap))
     beside = _numbers(answer) if isinstance(answer, Answer) else {}
     if isinstance(answer, Answer):
         if not isinstance(answer.converged, bool | np.bool_):
             raise BadAnswer(f"converged = {answer.converged!r}: expected true or false")
         if not answer.converged:
-            raise BadAnswer("the solver did not converge by its own report")
+            said = "the solver did not converge by its own report"
+            if problem.coupling is not None:
+                raise Unsupported(f"{said}, at a coupling of strength {problem.coupling_strength:.2g}")
+            raise BadAnswer(said)
         answer = np.asanyarray(answer.pressure)  # a mask stays
     if not isinstance(answer, np.ndarray) or answer.dtype.kind not in "fiu":
         kind = "None" if answer is None else f"a {type(answer).__name__}"

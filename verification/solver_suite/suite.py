@@ -12,7 +12,7 @@ from functools import cache
 from verification.framework.case import Result
 from verification.solver_suite import checks
 from verification.solver_suite.check import Check
-from verification.solver_suite.protocol import Contestant
+from verification.solver_suite.protocol import SolverUnderTest
 
 VERSION = "1.2"
 """Version of the suite, in every result and in CITATION.cff: raised when a case is added, removed or judged
@@ -53,9 +53,9 @@ def select(globs: Iterable[str] = (), among: tuple[Check, ...] | None = None) ->
     return tuple(c for c in checks_ if not patterns or any(fnmatchcase(c.id, p) for p in patterns))
 
 
-def run(contestant: Contestant, globs: Iterable[str] = ()) -> list[Result]:
+def run(solver: SolverUnderTest, globs: Iterable[str] = ()) -> list[Result]:
     """Return a solver's results, from this process; a case beyond its abilities is `unavailable`."""
-    return [check.case(contestant).run() for check in select(globs)]
+    return [check.case(solver).run() for check in select(globs)]
 
 
 if __name__ == "__main__":

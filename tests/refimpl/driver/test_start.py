@@ -68,7 +68,7 @@ def test_whatever_a_solve_starts_from(sample: Sample, share: float) -> None:
 def test_an_element_that_leaves_leaves_nothing(share: float) -> None:
     """Found by hypothesis: 1e-16 of its pressure was left, and with it the element in the area."""
     sample = Sample(
-        bumps=((0, 9, 0), (1, 3, 3), (0, 3, 0)), bowl=29, E=(6, 1), nu=(1, 0), pressure=27, beta=13, angle=1
+        bumps=((0, 9, 0), (1, 3, 3), (0, 3, 0)), upper=29, E=(6, 1), nu=(1, 0), pressure=27, beta=13, angle=1
     )
     dense = rf.solve(sample.scene, 3, method="dense")
     start = rf.solve(replace(sample.scene, load=share * sample.scene.load), 3)
@@ -80,7 +80,7 @@ def test_a_contact_that_grows_to_its_windows_edge_has_slopes_there() -> None:
     """Found by hypothesis: one-sided slopes on the edge left a slope residual of 1e-3 on the whole grid."""
     rows = ["3b860299", "5de60e71", "09154a1d", "6fe56e04", "44c67aec", "6e01b404", "009ef52f", "6fe56e04"]
     bumps = tuple(tuple(int(digit, 16) for digit in row) for row in rows)
-    sample = Sample(bumps, bowl=35, E=(111, 56), nu=(0, 29), pressure=12, tau=43, beta=27, angle=-3)
+    sample = Sample(bumps, upper=35, E=(111, 56), nu=(0, 29), pressure=12, tau=43, beta=27, angle=-3)
     start = rf.solve(replace(sample.scene, load=0.3 * sample.scene.load), 8)
     found, afresh = (rf.solve(sample.scene, 8, tolerance=1e-12, start=s) for s in (start, None))
     assert found.converged

@@ -38,7 +38,7 @@ def _rows(scene: rf.Scene, relative: float, loads: tuple[float, ...] = LOADS, gr
     return found
 
 
-def _blind(scene: rf.Scene) -> rf.Scene:
+def _without_friction(scene: rf.Scene) -> rf.Scene:
     return replace(scene, friction=rf.Friction())
 
 
@@ -53,7 +53,7 @@ def planes() -> rf.Scene:
 
 
 def test_exact_data_give_the_parameters_back(smooth: rf.Scene) -> None:
-    found = identify(_blind(smooth), _rows(smooth, 0.001), M)
+    found = identify(_without_friction(smooth), _rows(smooth, 0.001), M)
     assert found.values["tau"].value == pytest.approx(15e6, rel=1e-3)
     assert found.values["beta"].value == pytest.approx(0.08, rel=1e-2)
     assert found.chi_square < 0.01
@@ -70,7 +70,7 @@ def test_a_fit_without_a_first_guess_converges_where_pressures_are_far_below_the
         load=1.0,
         side=1e-3,
     )
-    found = identify(_blind(scene), _rows(scene, 0.01, (0.001, 0.01, 0.1, 1.0)), M, design=False)
+    found = identify(_without_friction(scene), _rows(scene, 0.01, (0.001, 0.01, 0.1, 1.0)), M, design=False)
     assert found.values["tau"].value == pytest.approx(1e6, rel=1e-3)
     assert found.values["beta"].value == pytest.approx(0.1, rel=1e-2)
 
@@ -137,7 +137,7 @@ def test_realisations_add_to_the_uncertainty(planes: rf.Scene) -> None:
 )
 def test_data_of_a_simpler_law_prefer_it(smooth: rf.Scene, friction: rf.Friction, law: str) -> None:
     rows = _rows(replace(smooth, friction=friction), 0.01)
-    found = identify(_blind(smooth), rows, M, design=False)
+    found = identify(_without_friction(smooth), rows, M, design=False)
     (name,), (value,) = zip(*found.laws[0].parameters.items(), strict=True)
     assert found.laws[0].name == law
     assert value == pytest.approx(getattr(friction, name), rel=1e-3)
@@ -154,7 +154,7 @@ def test_data_of_a_limited_law_prefer_the_limited_law(smooth: rf.Scene) -> None:
         stress = np.minimum(15e6 + 0.08 * solution.pressure, 20e6)[solution.contact]
         mu = float(stress.sum()) * solution.grid.element_area / load
         rows.append(Row(load, mu, 0.001 * mu))
-    found = identify(_blind(smooth), rows, 96, design=False)
+    found = identify(_without_friction(smooth), rows, 96, design=False)
     laws = {law.name: law for law in found.laws}
     linear, limited = laws["tau + beta f"], laws["min(tau + beta f, r_max)"]
     assert limited.parameters["r_max"] == pytest.approx(20e6, rel=0.05)
@@ -170,7 +170,7 @@ def _yielding(smooth: rf.Scene, hardness: float) -> rf.Scene:
 def test_the_hardness_is_given_back_from_a_wrong_guess(smooth: rf.Scene) -> None:
     """p_max of the elastic contact is 0.17 GPa at 70 N: 0.1 GPa yields at the larger loads alone."""
     rows = _rows(_yielding(smooth, 100e6), 0.002, (2.0, 5.0, 10.0, 20.0, 40.0, 80.0), 64)
-    found = identify(_yielding(_blind(smooth), 130e6), rows, 64, fit=["hardness"], design=False)
+    found = identify(_yielding(_without_friction(smooth), 130e6), rows, 64, fit=["hardness"], design=False)
     hardness = found.values["lower.material.hardness"]
     assert hardness.value == pytest.approx(100e6, rel=0.02)
     assert found.values["tau"].value == pytest.approx(15e6, rel=0.02)

@@ -136,6 +136,7 @@ def test_memory_is_that_of_all_elements_and_a_refusal_names_the_longer_side(
     chosen = planned(SMOOTH, 256)
     room = memory_of("fft", square, extent=chosen.contact.extent)
     monkeypatch.setattr(plan, "free_memory", lambda: room)
+    monkeypatch.setattr(plan, "UNREAD", 0)
     assert memory_of("fft", oblong) < chosen.on(oblong).memory == room
     for refuse in (lambda grid: memory_of("fft", grid, extent=chosen.contact.extent), chosen.on):
         with pytest.raises(rf.InputError, match=r"grid = 97: .* GB") as refused:

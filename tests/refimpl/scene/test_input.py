@@ -163,9 +163,9 @@ def test_a_grid_out_of_reach_is_refused_before_anything_is_allocated(
 
 
 def test_the_estimate_follows_the_free_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(plan, "free_memory", lambda: 1_000_000)
+    monkeypatch.setattr(plan, "free_memory", lambda: 100_000_000)
     with pytest.raises(rf.InputError):
-        rf.solve(SCENE, 64)
+        rf.solve(SCENE, 1024)
     assert rf.solve(SCENE, 16).status is rf.Status.CONVERGED
 
 

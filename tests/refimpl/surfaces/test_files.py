@@ -62,7 +62,7 @@ def test_files_are_read_once_and_late(tmp_path: Path) -> None:
     np.testing.assert_array_equal(surface.heights(Grid.square(SIDE, 16)), first)
 
 
-class Trap:
+class MakesAFolder:
     """Unpickled, it would leave a file behind."""
 
     def __init__(self, sprung: Path) -> None:
@@ -72,7 +72,7 @@ class Trap:
         return os.mkdir, (str(self.sprung),)
 
 
-def hostile(folder: Path) -> dict[str, Path]:
+def malformed(folder: Path) -> dict[str, Path]:
     whole = write_x3p(folder / "whole.x3p", ROUGH).read_bytes()
     files = {
         "truncated.x3p": whole[: len(whole) // 2],
@@ -103,9 +103,9 @@ def hostile(folder: Path) -> dict[str, Path]:
     (folder / "header.npy").unlink()
     np.save(folder / "complex.npy", np.zeros((5, 5), complex))
     np.save(folder / "cube.npy", np.zeros((5, 5, 5)))
-    traps = np.full((4, 4), Trap(folder / "sprung"), dtype=object)
-    np.save(folder / "pickle.npy", traps, allow_pickle=True)
-    np.savez(folder / "pickle.npz", z=traps)
+    unpickled = np.full((4, 4), MakesAFolder(folder / "sprung"), dtype=object)
+    np.save(folder / "pickle.npy", unpickled, allow_pickle=True)
+    np.savez(folder / "pickle.npz", z=unpickled)
     (folder / "pickle.x3p").write_bytes((folder / "pickle.npz").read_bytes())
     write_x3p(folder / "huge.x3p", np.empty((2**20, 0)), data=b"").write_bytes(
         write_x3p(folder / "nodata.x3p", ROUGH, data=b"").read_bytes()
@@ -117,8 +117,8 @@ def hostile(folder: Path) -> dict[str, Path]:
 
 
 @pytest.mark.filterwarnings("error")
-def test_broken_and_hostile_files_get_one_clear_line(tmp_path: Path) -> None:
-    files = hostile(tmp_path)
+def test_damaged_and_malformed_files_get_one_clear_line(tmp_path: Path) -> None:
+    files = malformed(tmp_path)
     assert len(files) >= 24
     for name, path in {**files, "absent.x3p": tmp_path / "absent.x3p", "long": Path("x" * 5000)}.items():
         given = {"unit": "m", "pixel_size": DX} if path.suffix in (".npy", ".csv", ".mat", ".txt") else {}

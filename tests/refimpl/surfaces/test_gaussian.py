@@ -208,9 +208,9 @@ def test_heights_are_the_plain_double_sum() -> None:
 def test_periodic_covariance_is_the_periodic_sum(lengths: tuple[float, float], lay: float) -> None:
     grid = Grid((16, 16), (7.0, 5.0), periodic=True)
     surface = GaussianRoughness(1.0, lengths, seed=1, lay=lay)
-    torus = surface._torus(grid)
-    k, across = (np.arange(-n, n + 1.0) for n in torus.waves)
-    qx, qy = torus.wave_vectors(k, across)
+    lattice = surface._wave_lattice(grid)
+    k, across = (np.arange(-n, n + 1.0) for n in lattice.waves)
+    qx, qy = lattice.wave_vectors(k, across)
     power = surface._amplitude(qx, qy) ** 2
 
     def images(x: float, y: float) -> float:

@@ -73,7 +73,7 @@ def periodic_modes(seed: int, **changed: Any) -> Modes:
     return Modes(rough(rms=1.0, seed=seed, **changed).sample(grid), grid.lengths, isotropic)
 
 
-def free_torus(seed: int) -> Modes:
+def free_lattice(seed: int) -> Modes:
     """The whole period of a free surface, 8 long cuts, put together from 16 slides of one domain."""
     grid = Grid.square(SIDE, 128)
     surface = rough(rms=1.0, seed=seed)
@@ -86,7 +86,7 @@ def ensembles() -> dict[str, list[Modes]]:
     """Seeds 1 to 12 periodic, 1 to 3 free: fixed before anything was looked at."""
     return {
         "periodic": [periodic_modes(seed) for seed in range(1, 13)],
-        "free": [free_torus(seed) for seed in range(1, 4)],
+        "free": [free_lattice(seed) for seed in range(1, 4)],
     }
 
 

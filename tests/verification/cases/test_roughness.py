@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from verification.adapters import contactmechanics, tamaas
-from verification.adapters.published_code import Peer
+from verification.adapters.published_code import PublishedCode
 from verification.cases.contact import lay, self_affine
 from verification.sweep.engine import sweep
 from verification.sweep.study_file import study_from_dict
 
-PEERS = [
+PUBLISHED = [
     pytest.param(
         peer,
         id=peer.extra,
@@ -22,8 +22,8 @@ PEERS = [
 ]
 
 
-@pytest.mark.parametrize("peer", PEERS)
-def test_other_codes_find_the_same_pressures(peer: Peer) -> None:
+@pytest.mark.parametrize("peer", PUBLISHED)
+def test_other_codes_find_the_same_pressures(peer: PublishedCode) -> None:
     assert self_affine.agreement(peer).value < 1e-6  # of the peak; measured 4e-12
 
 

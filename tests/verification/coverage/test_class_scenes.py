@@ -184,8 +184,8 @@ def test_directions_of_lays_and_numbers_of_grooves() -> None:
     assert {wave.numbers for wave in waves} == {(n, 0) for n in (1, 2, 3, 4)} | {(0, n) for n in (1, 2, 3, 4)}
 
 
-class Told:
-    """A generator of random integers that are told, and the bounds that were asked for."""
+class Drawn:
+    """A generator of given integers that records the bounds of each draw."""
 
     def __init__(self, *numbers: int) -> None:
         self.numbers, self.asked = list(numbers), list[tuple[int, ...]]()
@@ -199,15 +199,15 @@ MAP: Array = np.random.default_rng(8).gamma(2.0, 3e-6, (310, 420))
 
 
 @pytest.mark.parametrize(
-    ("whole", "told", "asked"),
+    ("whole", "numbers", "asked"),
     [
         (False, (120, 17, 300), [(100, 301), (191,), (301,)]),
         (True, (54, 0), [(55,), (165,)]),  # 256 points: the first of both bounds is out of the map
     ],
 )
-def test_windows_of_a_map(whole: bool, told: tuple[int, ...], asked: list[tuple[int, ...]]) -> None:
+def test_windows_of_a_map(whole: bool, numbers: tuple[int, ...], asked: list[tuple[int, ...]]) -> None:
     """A square of free heights from anywhere in the map, with 0.1 um rms about zero."""
-    draw: Any = SimpleNamespace(rng=Told(*told), size=(1e-3, 4e-4), periodic=True)
+    draw: Any = SimpleNamespace(rng=Drawn(*numbers), size=(1e-3, 4e-4), periodic=True)
     surface: Any = windows_of(MAP, whole=whole)(draw)
     assert draw.rng.asked == asked
     assert (draw.size, draw.periodic) == ((1e-3, 1e-3), False)
@@ -218,7 +218,7 @@ def test_windows_of_a_map(whole: bool, told: tuple[int, ...], asked: list[tuple[
 
 
 def test_a_map_smaller_than_a_window_is_taken_whole() -> None:
-    draw: Any = SimpleNamespace(rng=Told(300, 0, 30), size=(1e-3, 1e-3), periodic=False)
+    draw: Any = SimpleNamespace(rng=Drawn(300, 0, 30), size=(1e-3, 1e-3), periodic=False)
     surface: Any = windows_of(MAP[:90, :120])(draw)
     assert draw.rng.asked[1:] == [(1,), (31,)]
     assert surface.data.shape == (90, 90)

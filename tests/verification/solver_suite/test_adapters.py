@@ -1,6 +1,6 @@
-"""Adapters: each peer that is installed solves the problem it is given; one that is not says so.
+"""Adapters: each code that is installed solves the problem it is given; one that is not says so.
 
-What a peer does when it is set up wrongly is shown here too, and that the suite fails it then.
+What a code does when it is set up wrongly is shown here too, and that the suite fails it then.
 """
 
 from __future__ import annotations
@@ -13,21 +13,21 @@ import numpy as np
 import pytest
 
 from verification.adapters import aspher, contactmechanics, negative_controls, slippy, table, tamaas
-from verification.adapters.published_code import Peer, PeerAnswer, closure
+from verification.adapters.published_code import PublishedAnswer, PublishedCode, closure
 from verification.benchmarks.problems import problem
 from verification.framework.case import Unavailable
 from verification.solver_suite import gaps, reference_solution, suite
 from verification.solver_suite.own import solve as own
 from verification.solver_suite.protocol import Abilities, ContactProblem, Unsupported, ask
 
-PEERS = (tamaas.solve, contactmechanics.solve, aspher.solve)
+PUBLISHED = (tamaas.solve, contactmechanics.solve, aspher.solve)
 SPHERE = problem("smooth", 128, 1e-8)
 """Table 1's paraboloid on a flat."""
 TINY = problem("smooth", 4, 1e-8)
 
 
-def needs(peer: Peer) -> pytest.MarkDecorator:
-    return pytest.mark.skipif(peer.installed is None, reason=f"{peer.distribution} is not installed")
+def needs(code: PublishedCode) -> pytest.MarkDecorator:
+    return pytest.mark.skipif(code.installed is None, reason=f"{code.distribution} is not installed")
 
 
 BUMP, WAVE = gaps.rough_bump(24, 1) * 1e-3, gaps.waves(24, 3, shortest=8) * 1e-6
@@ -60,26 +60,26 @@ CANNOT = {
 
 
 @pytest.mark.parametrize("name", SMALL)
-@pytest.mark.parametrize("peer", [pytest.param(p, marks=needs(p), id=p.extra) for p in PEERS])
-def test_peer_meets_the_tolerance_or_refuses(peer: Peer, name: str) -> None:
+@pytest.mark.parametrize("code", [pytest.param(p, marks=needs(p), id=p.extra) for p in PUBLISHED])
+def test_code_meets_the_tolerance_or_refuses(code: PublishedCode, name: str) -> None:
     posed = small(name)
-    if (peer.extra, name) in CANNOT:
-        with pytest.raises(Exception, match=CANNOT[peer.extra, name]):
-            ask(peer, posed)
+    if (code.extra, name) in CANNOT:
+        with pytest.raises(Exception, match=CANNOT[code.extra, name]):
+            ask(code, posed)
         return
-    pressure = np.asarray(ask(peer, posed).pressure)
+    pressure = np.asarray(ask(code, posed).pressure)
     # adapters derive their tolerances from bounds of mechanics, so the recomputed residual must comply
     assert reference_solution.residual(posed, pressure).worst <= posed.tolerance
     np.testing.assert_allclose(pressure, np.asarray(own(posed).pressure), atol=1e-4 * pressure.max(), rtol=0)
 
 
-@pytest.mark.parametrize("peer", [pytest.param(p, marks=needs(p), id=p.extra) for p in PEERS])
-def test_peer_gives_table_1_in_free_space(peer: Peer) -> None:
-    answer = peer(SPHERE)
+@pytest.mark.parametrize("code", [pytest.param(p, marks=needs(p), id=p.extra) for p in PUBLISHED])
+def test_code_gives_table_1_in_free_space(code: PublishedCode) -> None:
+    answer = code(SPHERE)
     # 166.2417 MPa: all four codes at 128 x 128; the periodic problem has 171.0454 MPa
     assert float(np.max(np.asarray(answer.pressure))) == pytest.approx(166.2417e6, rel=1e-6)
     assert answer.converged is True
-    assert f"{peer.installed}" in peer.version
+    assert f"{code.installed}" in code.version
 
 
 def test_pressures_that_deform_nothing_have_no_residual() -> None:
@@ -90,8 +90,8 @@ def test_pressures_that_deform_nothing_have_no_residual() -> None:
     assert table.recomputed(lone, np.array([[6e9, 0.0, 0.0]])) > 1  # a load that one element cannot carry
 
 
-def test_absent_peer_is_unavailable() -> None:
-    absent = Peer("no-such-solver", "none", "", Abilities(), lambda _: PeerAnswer([], True))
+def test_absent_code_is_unavailable() -> None:
+    absent = PublishedCode("no-such-solver", "none", "", Abilities(), lambda _: PublishedAnswer([], True))
     assert absent.version == "no-such-solver (not installed)"
     with pytest.raises(Unavailable, match=r"pip install -c constraints.txt -e '\.\[none\]' in a checkout"):
         absent(TINY)
@@ -148,11 +148,12 @@ def test_designs_are_one_row_each_with_their_failures() -> None:
     assert table.summarised([row("01", "pass", 0.5), row("02", "unavailable", None)])[0]["status"] == "pass"
 
 
-def test_present_peer_keeps_to_its_abilities() -> None:
+def test_present_code_keeps_to_its_abilities() -> None:
     """NumPy is always there: a distribution that is installed."""
-    peer = Peer("numpy", "none", "", Abilities(periodic=False), lambda p: PeerAnswer(p.gap, True))
+    able = Abilities(periodic=False)
+    code = PublishedCode("numpy", "none", "", able, lambda posed: PublishedAnswer(posed.gap, True))
     with pytest.raises(Unsupported, match="numpy does not offer: periodic"):
-        peer(replace(TINY, periodic=True))
+        code(replace(TINY, periodic=True))
 
 
 @pytest.mark.parametrize("name", SMALL)
@@ -166,10 +167,10 @@ def test_closure_is_a_bound(name: str) -> None:
         assert closure(posed) / (0.5 * mean_displacement) <= posed.tolerance * (1 + rounding)
 
 
-@pytest.mark.parametrize("peer", [pytest.param(p, marks=needs(p), id=p.extra) for p in PEERS[:2]])
-def test_peers_refuse_an_approach_with_a_hardness(peer: Peer) -> None:
+@pytest.mark.parametrize("code", [pytest.param(p, marks=needs(p), id=p.extra) for p in PUBLISHED[:2]])
+def test_codes_refuse_an_approach_with_a_hardness(code: PublishedCode) -> None:
     with pytest.raises(Unsupported, match="with a hardness"):
-        peer(small("periodic, approach", hardness=1e8))
+        code(small("periodic, approach", hardness=1e8))
 
 
 @needs(tamaas.solve)
@@ -206,9 +207,9 @@ def test_negative_control_contactmechanics_without_mean_stiffness_stops_at_once(
     )
 
 
-def fails(peer: Peer, *cases: str) -> bool:
+def fails(code: PublishedCode, *cases: str) -> bool:
     """Whether the suite fails it in each of these cases."""
-    return [result.status for result in suite.run(peer, cases)] == ["fail"] * len(cases)
+    return [result.status for result in suite.run(code, cases)] == ["fail"] * len(cases)
 
 
 def test_table_has_every_entrant_and_recomputes_residuals(monkeypatch: pytest.MonkeyPatch) -> None:

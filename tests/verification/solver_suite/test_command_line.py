@@ -1,4 +1,4 @@
-"""A contestant on the command line: solvers that misbehave, options, what is printed and what is refused."""
+"""A solver under test on the command line: faulty solvers, options, what is printed and what is refused."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from verification.cli import main
-from verification.cli.contestant import _source, add_options
-from verification.cli.contestant_report import unseen_faults
+from verification.cli.suite_report import unseen_faults
+from verification.cli.suite_run import _source, add_options
 from verification.framework.case import Status
 from verification.solver_suite import own
 from verification.solver_suite.check import Fault

@@ -18,7 +18,7 @@ from verification.framework.case import Result
 from verification.solver_suite import convergence, own, suite
 from verification.solver_suite.check import Entrant
 from verification.solver_suite.convergence import SLOW, WRONG, exit_status, of_field, weighted
-from verification.solver_suite.protocol import Abilities, Answer, ContactProblem, Contestant
+from verification.solver_suite.protocol import Abilities, Answer, ContactProblem, SolverUnderTest
 
 FREE = Abilities(periodic=False, coupling=True)
 QUICK = ("other-hertz", "other-ellipse", "other-load")
@@ -62,7 +62,7 @@ def averaging(problem: ContactProblem) -> Answer:
 averaging.abilities = Abilities(aperiodic=False, approach=False)  # type: ignore[attr-defined]
 
 
-def changed(how: str) -> Contestant:
+def changed(how: str) -> SolverUnderTest:
     def solve(problem: ContactProblem) -> Answer:
         modulus = problem.reduced_modulus * (1.01 if how == "stiff" else 1.0)
         f = np.asarray(own.solve(replace(problem, reduced_modulus=modulus)).pressure)
@@ -74,7 +74,7 @@ def changed(how: str) -> Contestant:
     return solve
 
 
-def results(solver: Contestant, slugs: tuple[str, ...] = QUICK) -> list[Result]:
+def results(solver: SolverUnderTest, slugs: tuple[str, ...] = QUICK) -> list[Result]:
     return [check.case(solver).run() for check in convergence.CASES if check.slug in slugs]
 
 

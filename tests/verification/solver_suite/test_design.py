@@ -81,13 +81,13 @@ def test_a_memory_is_judged_by_all_problems_in_turn() -> None:
     number = 1 + next(n for n, row in enumerate(rows()["memory"]) if row["changed"] == "modulus")
     moduli: list[float] = []
 
-    def remembering(problem: ContactProblem) -> Array:
+    def with_the_first_modulus(problem: ContactProblem) -> Array:
         moduli.append(problem.reduced_modulus)
         return np.asarray(own.solve(replace(problem, reduced_modulus=moduli[0])).pressure)
 
     (check,) = select([f"contestant/design-memory-{number:02}"])
     assert check.case(own.solve).run().status == "pass"
-    assert check.case(Limited(remembering, own.solve.abilities)).run().status == "fail"
+    assert check.case(Limited(with_the_first_modulus, own.solve.abilities)).run().status == "fail"
     assert len(moduli) == 3
 
 

@@ -149,7 +149,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def judged(name: str, timeout: float = 60.0) -> list[Result]:
-    return isolated.run(Named(f"hostile:{name}").contestant, CASES, timeout=timeout)
+    return isolated.run(Named(f"hostile:{name}").solver, CASES, timeout=timeout)
 
 
 @pytest.mark.parametrize(

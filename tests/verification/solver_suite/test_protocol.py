@@ -1,8 +1,9 @@
-"""How a contestant is asked, and that nothing but a checked answer counts: every other end fails closed."""
+"""How a solver under test is called, and that only a checked answer counts: every other end fails closed."""
 
 from __future__ import annotations
 
 import json
+import math
 import tracemalloc
 from dataclasses import replace
 from pathlib import Path
@@ -113,7 +114,7 @@ def test_an_array_and_an_answer_are_accepted() -> None:
         np.testing.assert_array_equal(ask(lambda problem, a=answer: a, _still()).pressure, FINE)  # type: ignore[misc]
 
 
-def test_a_contestant_cannot_change_the_problem_it_is_judged_by() -> None:
+def test_a_solver_cannot_change_the_problem_it_is_judged_by() -> None:
     def meddling(problem: ContactProblem) -> Answer:
         problem.gap[:] = 0.0
         return Answer(FINE, True)
@@ -139,10 +140,29 @@ def test_abilities_decide_what_is_posed() -> None:
         replace(_still(), hardness=0.0)
     with pytest.raises(Unsupported, match="coupling"):
         ask(lambda problem: FINE, PROBLEM)
+    strength = PROBLEM.coupling_strength
+    assert strength == pytest.approx(math.pi * 1e-11 * 1e9 * 0.1)
+    for limit, lacking in ((strength, None), (0.9 * strength, f"coupling of strength {strength:.3g}")):
+        assert Abilities(coupling=True, strongest=limit).lacking(PROBLEM) == lacking
+
+
+def test_an_admitted_failure_is_an_error_without_friction_and_beyond_reach_with_it() -> None:
+    def lagging(problem: ContactProblem) -> Answer:
+        return Answer(FINE, False)
+
+    lagging.abilities = Abilities(coupling=True)  # type: ignore[attr-defined]
+    with pytest.raises(Unsupported, match="did not converge by its own report, at a coupling of strength"):
+        ask(lagging, PROBLEM)
+    with pytest.raises(BadAnswer, match="did not converge by its own report"):
+        ask(lagging, _still())
+
+
+def test_abilities_that_do_not_exist_are_refused() -> None:
     for wrong in ("aperiodic", "load", "load,periodic,magic", ""):
         with pytest.raises(InputError, match="abilities"):
             Abilities.named(wrong)
-    for limits in ({"precision": 1e-5}, {"precision": 0.0}, {"largest": 0}, {"coupling": "no"}):
+    absurd = ({"precision": 1e-5}, {"precision": 0.0}, {"largest": 0}, {"coupling": "no"}, {"strongest": -1})
+    for limits in absurd:
         with pytest.raises(InputError, match="abilities"):
             Abilities(**limits)  # type: ignore[arg-type]  # wrong on purpose
     boastful = type("Boastful", (), {"abilities": "all", "__call__": lambda self, problem: FINE})()

@@ -22,12 +22,12 @@ from verification.solver_suite.command import Command
 from verification.solver_suite.faulty_solvers.table import FAULTY, Faulty
 from verification.solver_suite.gaps import rough_bump
 from verification.solver_suite.isolated import Limited
-from verification.solver_suite.protocol import Abilities, ContactProblem, Contestant
+from verification.solver_suite.protocol import Abilities, ContactProblem, SolverUnderTest
 from verification.solver_suite.suite import run, suite
 
 FINE = (Fault.SINGLE_PRECISION, Fault.ABSOLUTE_THRESHOLD)
 """Faults below the laxest claim."""
-SOURCE = Path(__file__).with_name("contestant.c")
+SOURCE = Path(__file__).with_name("solver.c")
 
 
 def naming(fault: Fault) -> list[str]:
@@ -85,7 +85,7 @@ def test_single_precision_that_says_so_is_held_to_what_it_says() -> None:
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 def test_a_program_in_c_passes_what_applies_to_it(tmp_path: Path) -> None:
-    program = tmp_path / "contestant"
+    program = tmp_path / "solver"
     subprocess.run(["cc", "-O2", "-Wall", "-Werror", "-o", program, SOURCE, "-lm"], check=True)
     able = Abilities.named("aperiodic,load,approach", largest=32)
     results = run(Command((str(program),), able, timeout=60.0))
@@ -160,7 +160,7 @@ SOME = [check.id for check in suite() if not re.search(r"/design-(?!tiny).*[1-9]
 
 
 @pytest.mark.parametrize("answer", NONSENSE.values(), ids=NONSENSE)
-def test_nonsense_passes_nothing_but_symmetries_and_warns_of_nothing(answer: Contestant) -> None:
+def test_nonsense_passes_nothing_but_symmetries_and_warns_of_nothing(answer: SolverUnderTest) -> None:
     """Energies and sums overflow or vanish: infinity over infinity is no proof that two answers agree."""
     with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")

@@ -14,7 +14,7 @@ import pytest
 import refimpl as rf
 from refimpl.operators.fft import FFTInfluence
 from reports.result_files import committed, read_result
-from verification.cases.solvers.extremes import counted
+from verification.cases.solvers.stress_tests import counted
 from verification.exact.dense_influence import DenseInfluence
 from verification.scenes.cross_checks import POLYMER, pressed
 from verification.stress_tests import (
@@ -207,12 +207,12 @@ def test_conjugate_gradients_take_a_step_for_each_eigenvalue(values: list[float]
     assert conditioning.conjugate_gradients(np.diag(many), np.arange(1.0, 1 + len(many))) == expected
 
 
-@judge.guarded
+@judge.judged_on_exceptions
 def raising(error: Exception) -> Judged:
     raise error
 
 
-@judge.guarded
+@judge.judged_on_exceptions
 def endless() -> Judged:
     while True:
         pass
@@ -223,7 +223,7 @@ def endless() -> Judged:
     [
         ("right", "value", lambda: number(1e-9, 1e-8, "value", "x")),
         ("wrong", "value", lambda: number(float("nan"), 1e-8, "value", "x")),
-        ("honest failure", "InputError", lambda: judge.guarded(rf.Material)(-1.0, 0.3)),
+        ("honest failure", "InputError", lambda: judge.judged_on_exceptions(rf.Material)(-1.0, 0.3)),
         ("honest failure", "ArithmeticError", lambda: raising(ArithmeticError("no state"))),
         ("crash", "ZeroDivisionError", lambda: raising(ZeroDivisionError("division by zero"))),
         ("crash", "OutOfTime", endless),

@@ -14,7 +14,7 @@ from verification.exact.manufactured import PEAK, manufacture
 
 SCENES, M, SIDE = 20, 16, 1e-3
 STATES = 200
-GRID_OF_EXTREMES = 10
+GRID_OF_HARDNESSES = 10
 WRONG = 1e-5  # share of the maximum pressure: a wrong state, and no rounding of a right one
 AGREE = 1e-9
 """Share of the hardness within which pressures of two solvers agree."""
@@ -155,7 +155,7 @@ def area_by_hardness() -> Measured:
 
 
 @case("capped/extremes", metric="at_most", tolerance=0.0, tier="full")
-def extremes() -> Measured:
+def range_of_hardness() -> Measured:
     """Hardnesses from just above P / A0 to 1e3 times the elastic peak.
 
     Claim: of 200 small states none that is called converged differs from the plain solver's
@@ -170,17 +170,17 @@ def extreme_scene(seed: int) -> rf.Scene:
     """A scene whose hardness lies between P / A0 and 1e3 elastic peaks, evenly on a logarithmic scale."""
     random, scene = np.random.default_rng(10_000 + seed), rough_scene(seed)
     least = scene.load / SIDE**2 * (1 + 1e-6)
-    most = 1e3 * peak_of(scene, GRID_OF_EXTREMES)
+    most = 1e3 * peak_of(scene, GRID_OF_HARDNESSES)
     return with_hardness(scene, least * (most / least) ** random.uniform(), upper=seed % 5 == 0)
 
 
 def _is_right(scene: rf.Scene, *, oblique: bool) -> bool:
     """Whether pressures that are called converged are the plain solver's, where it has a solution."""
-    fft = rf.solve(scene, GRID_OF_EXTREMES, plastic=True, oblique=oblique)
+    fft = rf.solve(scene, GRID_OF_HARDNESSES, plastic=True, oblique=oblique)
     if not fft.converged:
         return True
     try:
-        dense = rf.solve(scene, GRID_OF_EXTREMES, method="dense", plastic=True, oblique=oblique)
+        dense = rf.solve(scene, GRID_OF_HARDNESSES, method="dense", plastic=True, oblique=oblique)
     except ArithmeticError:
         return True
     return (

@@ -23,7 +23,7 @@ import numpy as np
 import refimpl as rf
 from refimpl.grid import Array, Grid
 from verification.adapters import contactmechanics, tamaas
-from verification.adapters.published_code import Peer
+from verification.adapters.published_code import PublishedCode
 from verification.cases import Measured, case, family
 from verification.exact import rough_plane
 from verification.solver_suite.protocol import ContactProblem
@@ -45,7 +45,7 @@ def pressed(
 
 
 @family(
-    "peer, name, source",
+    "code, name, source",
     {
         "reference/self-affine-tamaas": (
             tamaas.solve, "Tamaas",
@@ -56,7 +56,7 @@ def pressed(
     },
     metric="at_most", tolerance=1e-6,
 )  # fmt: skip
-def agreement(peer: Peer) -> Measured:
+def agreement(code: PublishedCode) -> Measured:
     """Self-affine surfaces: pressures of {name} on the same heights.
 
     Claim: On the heights of a self-affine surface, free and periodic, {name} finds the same pressures
@@ -75,11 +75,11 @@ def agreement(peer: Peer) -> Measured:
             heights = surface.sample(Grid.square(SIDE, M, periodic=periodic))
             gap = heights.max() - heights
             problem = ContactProblem(gap, SIDE / M, MODULUS, load=load, periodic=periodic, tolerance=1e-12)
-            answer = peer(problem)
+            answer = code(problem)
             ours = pressed(surface, M, load, periodic=periodic, tolerance=1e-12)
             off = np.abs(np.asarray(answer.pressure) - ours.pressure).max() / ours.max_pressure
             differences[f"H = {hurst}, {'periodic' if periodic else 'free'}"] = float(off)
-    return Measured(max(differences.values()), data={"worst": differences}, note=peer.version)
+    return Measured(max(differences.values()), data={"worst": differences}, note=code.version)
 
 
 PRESSURE = 0.05  # p / (E* h'): about a tenth of the area in contact

@@ -62,7 +62,7 @@ def hertz_area() -> Measured:
 
 
 @case("accuracy/hertz-summits", metric="at_least", tolerance=0.92)
-def hertz_summits() -> Measured:
+def hertz_peaks() -> Measured:
     """Error bars of p_max, of the approach, and of the force at an approach on the Hertz contact.
 
     Claim: each is within its 95 % bar, of one grid, wherever between elements the peaks lie

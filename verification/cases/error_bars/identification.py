@@ -30,7 +30,7 @@ def _coverage(tables: TableSet, seeds: range) -> Measured:
 
 
 @case("identification/twins-sample", metric="at_least", tolerance=0.8)
-def twins_sample() -> Measured:
+def synthetic_sample() -> Measured:
     """95 % intervals of tau, beta and a new load's mu, one twin of each kind.
 
     Claim: The intervals cover the truth on balls and planes, elastic and at the hardness.
@@ -42,7 +42,7 @@ def twins_sample() -> Measured:
 
 
 @family(
-    "twins, title, claim, source, tolerance, tolerance_reason",
+    "tables, title, claim, source, tolerance, tolerance_reason",
     {
         "identification/twins": (
             "drawn", "95 % intervals of tau, beta and a new load's mu, in random twins",
@@ -73,9 +73,9 @@ def twins_sample() -> Measured:
     },
     metric="at_least", tier="full",
 )  # fmt: skip
-def third(twins: str) -> Measured:
-    """Judge every third twin of a study: all of them take longer than a tier should."""
-    return _coverage(SETS[twins], SETS[twins].seeds[::3])
+def third(tables: str) -> Measured:
+    """Judge every third synthetic table of a study: all of them take longer than a tier should."""
+    return _coverage(SETS[tables], SETS[tables].seeds[::3])
 
 
 @case("identification/effects", metric="at_most", tolerance=0.01)

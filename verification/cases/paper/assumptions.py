@@ -95,7 +95,7 @@ def _rms(along: Array, across: Array) -> float:
 
 
 @case("reproduction/interference-broken", metric="at_least", tolerance=0.04)
-def broken() -> Measured:
+def contact_without_interference() -> Measured:
     """Coupling can take contact out of kinematic interference.
 
     Claim: Section 4's assumption fails where shear exceeds the pressure some four times

@@ -92,7 +92,7 @@ def threshold(tier: str) -> Measured:
     printed = float(fig8.plasticity(np.array([CRITICAL_RMS]), RESOLUTION)[0])
     later = float(np.interp(1.0e-6, curves[-1].middle, curves[-1].rate(curves[-1].friction)))
     sentence = (
-        "the rate of mu falls to a tenth of its first at sigma_e = "
+        "the rate of mu falls to a tenth of its value at sigma_e = 0 at "
         + ", ".join(f"{s * 1e6:.2f} um at {c.load:g} N" for s, c in zip(critical, curves, strict=True))
         + f", and goes on falling ({later:.1%} at 1 um, 70 N). psi does not depend on the load; with the "
         f"printed epsilon = 3.15 um it is {printed:.3g} at 0.5 um"
@@ -103,7 +103,7 @@ def threshold(tier: str) -> Measured:
 
 
 def _levelled(curve: fig8.Curve) -> float:
-    """sigma_e (m) where the rate of mu has fallen to a tenth of its first."""
+    """sigma_e (m) where the rate of mu has fallen to a tenth of that at sigma_e = 0."""
     log_rate = np.log(np.maximum(curve.rate(curve.friction), 1e-6))
     return float(np.interp(-np.log(0.1), -log_rate, curve.middle))
 
@@ -122,7 +122,8 @@ def without_beta(tier: str) -> Measured:
     mu = [estimate(column(found, "friction_coefficient", lower_rms=flat)).scatter for flat in ROUGH]
     worst = float(np.max(np.abs(np.array(mu) / np.array(area) - 1)))
     sentence = (
-        f"A scatters by {_percent(area)}, mu by {_percent(mu)}: alike to {worst:.1%}; printed 7.5 % for both"
+        f"A scatters by {_percent(area)}, mu by {_percent(mu)}: the same but for {worst:.1%}; "
+        "printed 7.5 % for both"
     )
     data = {
         "sigma_e (um)": [c.equivalent_rms * 1e6 for c in TABLE3[1:]],

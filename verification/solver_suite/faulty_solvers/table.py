@@ -20,7 +20,7 @@ from refimpl.operators.periodic import PeriodicInfluence
 from refimpl.solvers.production import constants
 from verification.solver_suite import own, reference_solution
 from verification.solver_suite.check import Fault
-from verification.solver_suite.protocol import Answer, ContactProblem, Contestant, Coupling
+from verification.solver_suite.protocol import Answer, ContactProblem, Coupling, SolverUnderTest
 
 Solver = Callable[[ContactProblem], Array]
 
@@ -146,7 +146,7 @@ def _single(owner: Any, name: str) -> tuple[Any, str, Any]:
 _IN_SINGLE_PRECISION = _single(FFTInfluence, "_convolve"), _single(PeriodicInfluence, "_filter")
 _APPROACH_REVERSED = "approach", lambda problem, f: -reference_solution.approach_of(problem, f)
 
-FAULTY: dict[Fault, Callable[[], Contestant]] = {
+FAULTY: dict[Fault, Callable[[], SolverUnderTest]] = {
     Fault.SIGN_OF_C: lambda: Faulty(_coupled(lambda c: replace(c, shear_compliance=-c.shear_compliance))),
     Fault.TAU_MISSING: lambda: Faulty(_coupled(lambda c: replace(c, tau=0.0))),
     Fault.PERIODIC_FOR_APERIODIC: lambda: Faulty(asked(periodic)),

@@ -152,7 +152,7 @@ def test_contact_is_certain_beyond_twice_the_misfit(
     assert cg.contact_is_certain(stiffness) is certain
 
 
-def springs(
+def winkler(
     stiffness: float, pressure: list[float], b: list[float], target: float | None = None
 ) -> ProjectedCG:
     """A row of elements that do not feel each other, ``a f = f / stiffness``, at the approach 0 or loaded."""
@@ -166,7 +166,7 @@ def springs(
 @pytest.mark.parametrize("unit", [1.0, 1e-6])
 def test_a_step_beyond_the_trial_ends_where_the_first_pressure_vanishes(unit: float) -> None:
     """That element leaves the contact, and the rest keeps what the shorter step gave it."""
-    cg = springs(4.0, [unit, unit, unit], [0.25 * unit, -1.25 * unit, -0.25 * unit])  # residuals -1/2, 1, 0
+    cg = winkler(4.0, [unit, unit, unit], [0.25 * unit, -1.25 * unit, -0.25 * unit])  # residuals -1/2, 1, 0
     cg.iterate()
     np.testing.assert_allclose(cg.pressure / unit, [[0.0, 3.0, 1.0]], rtol=1e-15)
     np.testing.assert_allclose(cg.normal_displacement / unit, [[0.0, 0.75, 0.25]], rtol=1e-15)
@@ -176,7 +176,7 @@ def test_a_step_beyond_the_trial_ends_where_the_first_pressure_vanishes(unit: fl
 
 
 def test_an_exact_step_is_cut_at_zero_pressure_and_what_is_cut_leaves() -> None:
-    cg = springs(1.0, [1.0, 1.0], [1.0, -3.0])
+    cg = winkler(1.0, [1.0, 1.0], [1.0, -3.0])
     cg._trusted = False
     cg.iterate()
     np.testing.assert_array_equal(cg.pressure, [[0.0, 3.0]])
@@ -185,7 +185,7 @@ def test_an_exact_step_is_cut_at_zero_pressure_and_what_is_cut_leaves() -> None:
 
 
 def test_a_trial_that_leaves_nothing_is_given_up_for_the_exact_step() -> None:
-    cg = springs(0.1, [1.0, 2.0], [-5.0, -5.0])  # residuals -5 and -15, of which a tenth would do
+    cg = winkler(0.1, [1.0, 2.0], [-5.0, -5.0])  # residuals -5 and -15, of which a tenth would do
     cg.iterate()
     np.testing.assert_allclose(cg.pressure, [[0.5, 0.5]], rtol=1e-14)
 
@@ -194,7 +194,7 @@ def test_a_contact_that_is_not_at_its_approach_is_off_by_that() -> None:
     """By the work of its pressure on what misses it, over the energy, on either side of the approach."""
     for pressure in (0.25, 1e6):
         for b in (-1.25, 1.25):
-            off, _ = springs(2.0, [pressure, pressure], [b - pressure / 2, b - pressure / 2]).residuals()
+            off, _ = winkler(2.0, [pressure, pressure], [b - pressure / 2, b - pressure / 2]).residuals()
             energy = 2 * 0.5 * pressure**2 / 2
             assert off == pytest.approx(2 * pressure * 1.25 / energy, rel=1e-9)
 

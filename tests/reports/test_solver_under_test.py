@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
-from reports.contestant import rerun
 from reports.evidence import gathered, groups
 from reports.generator import render
 from reports.results import ResultFileError, check
+from reports.solver_under_test import rerun
 from tests.reports.sample import case, results
 from tests.reports.test_generator import Page, summary_of
 from verification.cli import parser
@@ -45,7 +45,7 @@ def test_title_and_summary_name_the_solver() -> None:
     assert "./mine --fast" in heading[0]
     assert "./mine --fast" in summary_of(html).text
     own = render(OURS["quick"], {})
-    assert "<title>Validation report" in own
+    assert "<title>Verification and replication report" in own
     assert "solver under test" not in own
 
 
@@ -93,6 +93,6 @@ def test_a_committed_run_of_another_solver_is_no_evidence_of_ours() -> None:
 
 
 @pytest.mark.parametrize("alien", [None, "mine", {}])
-def test_a_contestant_without_a_name_is_refused(alien: object) -> None:
+def test_a_solver_without_a_name_is_refused(alien: object) -> None:
     with pytest.raises(ResultFileError, match="contestant"):
         check(results(case("a/1"), contestant=alien))

@@ -1,4 +1,4 @@
-"""Fits of a model that is linear by construction, and the remarks on them."""
+"""Fits of a model that is linear by construction, and the notes on them."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ SAID: list[tuple[dict[str, Any], str]] = [
 
 
 @pytest.mark.parametrize(("changes", "said"), SAID)
-def test_each_remark_by_itself_and_none_at_the_thresholds(
+def test_each_note_by_itself_and_none_at_the_thresholds(
     found: Identification, changes: dict[str, Any], said: str
 ) -> None:
     others = {name: value for name, value in changes.items() if name not in ("fit", "responses")}

@@ -8,10 +8,10 @@ import signal
 import time
 from typing import TYPE_CHECKING, Any
 
-from verification.cli import contestant_report, suite_table
-from verification.cli.contestant_report import Judged
+from verification.cli import suite_report, suite_table
 from verification.cli.options import Options, declare, option, output_file
 from verification.cli.output import check_suffix, columns, emit, refusal, select_or_refuse
+from verification.cli.suite_report import Judged
 
 if TYPE_CHECKING:
     from verification.framework.case import Result
@@ -36,6 +36,9 @@ OPTIONS: Options = {
     ),
     "--largest": option("most elements a side that it should be given", metavar="M", type=int),
     "--precision": option("relative residual that it claims (default 1e-8)", metavar="P", type=float),
+    "--strongest": option(
+        "largest strength of coupling, pi |c0| E* beta, that it should be given", metavar="K", type=float
+    ),
     "--timeout": option(
         "seconds for one problem (default 60); a --solver has 5 more", metavar="S", type=float
     ),
@@ -64,7 +67,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "bring your own solver",
         "Run the suite of verification.solver_suite with it, one case after the other whatever --tier\n"
         "and --jobs say: the cases that are within its abilities; the others are named. Of the abilities\n"
-        "that a Python function carries, --able, --largest and --precision replace only what they state.",
+        "that a Python function carries, --able, --largest, --precision and --strongest replace only what\n"
+        "they state.",
     )
     declare(group, WHO | OPTIONS, one_of=tuple(WHO))
 
@@ -99,8 +103,8 @@ def run(options: argparse.Namespace) -> int:
         return 0
     name, source, stated = _source(options)
     judged = _judged(options, checks, among, name, source)
-    document = contestant_report.document(judged, identity_of(options), stated)
-    emit(document, options.json, contestant_report.text(readable(name), judged))
+    document = suite_report.document(judged, identity_of(options), stated)
+    emit(document, options.json, suite_report.text(readable(name), judged))
     if options.table is not None:
         ours = suite_table.run_entry(document["contestant"], suite.VERSION, judged.results)
         write_text(suite_table.text_of(options.table.suffix, [ours, *suite_table.published()]), options.table)
@@ -154,14 +158,14 @@ def _judged(
 
 def identity_of(options: argparse.Namespace) -> dict[str, str | None]:
     """Name, version and checksum of the solver."""
-    from verification.adapters import PEERS
+    from verification.adapters import PUBLISHED
     from verification.framework.case import readable
     from verification.solver_suite import identity
 
     if options.exec is not None:
         found = identity.of_command(options.exec)
-    elif options.solver in PEERS:
-        found = identity.of_peer(PEERS[options.solver])
+    elif options.solver in PUBLISHED:
+        found = identity.of_published_code(PUBLISHED[options.solver])
     else:
         found = identity.of_function(options.solver)
     return found | {"name": readable(options.solver or options.exec)}
@@ -175,18 +179,18 @@ def _source(options: argparse.Namespace) -> tuple[str, Source, dict[str, Any]]:
     """Name and source of the solver, and the abilities that are stated here: a program has no other."""
     from dataclasses import asdict, replace
 
-    from verification.adapters import PEERS
+    from verification.adapters import PUBLISHED
     from verification.solver_suite.command import Command
     from verification.solver_suite.isolated import Named
     from verification.solver_suite.protocol import Abilities
 
-    limits = {name: getattr(options, name) for name in ("largest", "precision")}
+    limits = {name: getattr(options, name) for name in ("largest", "precision", "strongest")}
     stated = {name: value for name, value in limits.items() if value is not None}
     if options.able is not None:
         listed = asdict(Abilities.named(options.able))
         stated = {name: able for name, able in listed.items() if name not in limits} | stated
     abilities = replace(Abilities(), **stated)  # refuses what cannot be, before anything is imported
     if options.solver is not None:
-        return options.solver, Named(PEERS.get(options.solver, options.solver), stated).contestant, stated
+        return options.solver, Named(PUBLISHED.get(options.solver, options.solver), stated).solver, stated
     command = Command.of(options.exec, abilities, _timeout(options))
-    return options.exec, command.contestant, asdict(abilities)
+    return options.exec, command.solver, asdict(abilities)

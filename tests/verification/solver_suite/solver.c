@@ -1,5 +1,5 @@
 /* A contact solver in another language, for a free half-space without coupling: conjugate gradients on the contact
-   set (Polonsky and Keer 1999), dense influence. Usage: contestant DIRECTORY, see verification/solver_suite/command.py */
+   set (Polonsky and Keer 1999), dense influence. Usage: solver DIRECTORY, see verification/solver_suite/command.py */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

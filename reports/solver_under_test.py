@@ -14,8 +14,8 @@ ELSEWHERE = ("--only", "--tier", "--jobs", "--json")
 
 def solver(results: Mapping[str, Any]) -> str | None:
     """Name of the solver under test: its MODULE:FUNCTION or command; None for the project's own cases."""
-    contestant = results.get("contestant")
-    return None if contestant is None else str(contestant["name"])
+    solver = results.get("contestant")
+    return None if solver is None else str(solver["name"])
 
 
 def rerun(command: str, case_id: str) -> str:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from verification.adapters import contactmechanics, tamaas
-from verification.adapters.published_code import Peer
+from verification.adapters.published_code import PublishedCode
 from verification.cases import Measured, family
 from verification.solver_suite import own
 from verification.solver_suite.check import MODULUS
@@ -37,7 +37,7 @@ def problems() -> dict[str, ContactProblem]:
 
 
 @family(
-    "peer, name, source, tolerance_reason",
+    "code, name, source, tolerance_reason",
     {
         "capped/tamaas": (
             tamaas.solve, "Tamaas", "Tamaas' KatoSaturated (Stanley and Kato 1997; Almqvist and others 2007)",
@@ -49,7 +49,7 @@ def problems() -> dict[str, ContactProblem]:
     },
     metric="at_most", tolerance=1e-9,
 )  # fmt: skip
-def agreement(peer: Peer) -> Measured:
+def agreement(code: PublishedCode) -> Measured:
     """Capped contact: pressures of {name} on the same gaps.
 
     Claim: free and periodic, with 2 to 97 % of the contact at the hardness, {name} finds the same pressures
@@ -57,9 +57,9 @@ def agreement(peer: Peer) -> Measured:
     differences = {}
     for name, problem in problems().items():
         assert problem.hardness is not None
-        answer, ours = peer(problem), own.solve(problem)
+        answer, ours = code(problem), own.solve(problem)
         if not (answer.converged and ours.converged):
-            raise RuntimeError(f"{name}: not converged: {peer.distribution if ours.converged else 'refimpl'}")
+            raise RuntimeError(f"{name}: not converged: {code.distribution if ours.converged else 'refimpl'}")
         theirs, found = np.asarray(answer.pressure), np.asarray(ours.pressure)
         differences[name] = float(np.abs(theirs - found).max() / problem.hardness)
-    return Measured(max(differences.values()), data={"differences": differences}, note=peer.version)
+    return Measured(max(differences.values()), data={"differences": differences}, note=code.version)
