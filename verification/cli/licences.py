@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Mapping, Sequence
 from importlib.metadata import Distribution, distributions
 
@@ -35,10 +34,13 @@ def normalised(name: str) -> str:
 
 def licence(package: Distribution) -> str:
     """Return the licence expression, or the classifiers, or the first line of the licence."""
-    stated = package.metadata
-    classified = [found[1] for one in stated.get_all("Classifier") or [] if (found := _CLASSIFIER.match(one))]
-    text = (stated.get("License") or "").strip("# =\n").split("\n")[0].strip()
-    return str(stated.get("License-Expression") or ", ".join(classified) or text[:_LENGTH] or "not stated")
+
+    def stated(field: str) -> list[str]:
+        return package.metadata.get_all(field) or []
+
+    classified = [found[1] for one in stated("Classifier") if (found := _CLASSIFIER.match(one))]
+    begins = [text.strip("# =\n").split("\n")[0].strip()[:_LENGTH] for text in stated("License")]
+    return ", ".join(stated("License-Expression") or classified or begins) or "not stated"
 
 
 def brought_by(extra: str, among: dict[str, Distribution]) -> set[str]:
@@ -89,4 +91,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()
