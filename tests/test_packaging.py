@@ -9,11 +9,13 @@ import os
 import subprocess
 import sys
 import tomllib
+from importlib.metadata import distributions
 from pathlib import Path
 
 import pytest
 
 from tests.documents import ROOT
+from verification.cli import licences
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 DATA: dict[str, list[str]] = PROJECT["tool"]["setuptools"]["package-data"]
@@ -56,6 +58,17 @@ def test_what_ci_installs_has_the_extras_that_tests_use() -> None:
     extras = PROJECT["project"]["optional-dependencies"]
     (own,) = (line for line in extras["dev"] if line.startswith("rough-friction["))
     assert set(own.partition("[")[2].rstrip("]").split(",")) == set(extras) - EXTRAS_TESTED_ELSEWHERE
+
+
+def test_the_table_of_licences_is_that_of_the_pinned_packages() -> None:
+    table = licences.table()
+    assert {name: version for name, version, *_ in table.values()} == licences.pinned()
+    installed = {licences.normalised(one.metadata["Name"]): one for one in distributions()}
+    for name, version, licence, by in table.values():
+        if name in installed and installed[name].version == version:
+            assert licence == licences.licence(installed[name])
+        if "GPL" in licence:
+            assert (name, by) in (("ducc0", "fast"), ("igor2", "instrument"), ("python-flint", "rigorous"))
 
 
 OPTIONAL = (

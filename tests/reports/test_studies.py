@@ -158,6 +158,12 @@ def test_a_study_without_its_numbers_is_refused(study: str) -> None:
         exhibit(study, {})
 
 
+@pytest.mark.parametrize("found", [{"provenance": {}}, {"provenance": 1.5}, {"counts": True}])
+def test_a_study_that_the_first_page_cannot_show_is_refused(found: dict[str, Any]) -> None:
+    with pytest.raises(ResultFileError, match="study"):
+        render(results(case("a/1")), {"extremes": EXTREMES | found})
+
+
 def test_the_newest_run_of_a_code_counts() -> None:
     (smooth,) = exhibit("benchmarks", BENCHMARKS).tables
     peers = [(cells[0], cells[4], cells[-2]) for cells in smooth.rows if cells[1] == "peer"]

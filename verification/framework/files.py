@@ -46,8 +46,10 @@ def replacing(path: Path) -> Iterator[Path]:
 
 def _open_now(path: str, flags: int) -> int:
     """Open a stream, but raise OSError where that would wait for somebody who reads it."""
-    handle = os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
-    os.set_blocking(handle, True)
+    at_once = getattr(os, "O_NONBLOCK", 0)  # absent on Windows, whose pipes have no names in folders
+    handle = os.open(path, flags | at_once)
+    if at_once:
+        os.set_blocking(handle, True)
     return handle
 
 
