@@ -11,6 +11,7 @@ from reports.agreement import Number, bias_and_scatter, by_quantity, fine
 from reports.claims import VERDICTS, Judged
 from reports.evidence import Evidence
 from reports.results import Case
+from reports.studies.experiments import sentences
 from reports.text import QUANTITIES, number, unit_of
 
 HERTZ = {
@@ -33,6 +34,8 @@ class FrontPage:
     hertz: Sequence[str]
     quantities: Sequence[tuple[str, int, str, str, int]]
     trust: Sequence[str]
+    experiments: Sequence[str]
+    """Sentences on predictions beside measurements; none where no result file has them."""
 
     @property
     def table3_rows(self) -> Mapping[str, Sequence[Number]]:
@@ -63,6 +66,7 @@ def front_page(evidence: Evidence, claims: Sequence[Judged], numbers: Sequence[N
         hertz=[said for said in map(_hertz, evidence.cases) if said],
         quantities=[_quantity(name, group) for name, group in by_quantity(numbers).items()],
         trust=[*_coverage(evidence.studies), *_trust(evidence.studies)],
+        experiments=sentences(evidence.studies["experiments"]) if "experiments" in evidence.studies else [],
     )
 
 
