@@ -99,7 +99,7 @@ CHAPTERS = (
         "Appendix III: costs",
         "Seconds beside published codes at one recomputed error, and the cost of an accuracy.",
         ("benchmarks",),
-        ("benchmarks", "accuracy_costs", "large_grids", "sweeps"),
+        ("benchmarks", "accuracy_costs"),
     ),
 )  # fmt: skip
 

@@ -67,8 +67,8 @@ def sentences(document: Document) -> list[str]:
 
 
 def _text(one: dict[str, Any]) -> str:
-    keys = ("fitted", "reduction", "left_out")
-    return f"{one['title']}. {' '.join(one[key] for key in keys)} Source: {one['source']}."
+    parts = f"{one['fitted']} Data: {one['reduction']} Neglected: {one['left_out']} Source: {one['source']}."
+    return f"{one['title']}. {parts}"
 
 
 def _unit(one: dict[str, Any]) -> str:

@@ -119,7 +119,7 @@ def mica(data: dict[str, Any]) -> list[Point]:
     """Compare the mean friction stress (MPa) with Eq. (1) on a smooth contact, whatever its shape."""
     stress = data["tau"] + data["beta"] * data["hardness"] / 2
     unknown = data["beta"] * data["hardness"] / 2
-    return [Point("micrometre, rough", data["stress"], data["half_width"], stress, 0.0, unknown)]
+    return [Point("rough, of 1 um", data["stress"], data["half_width"], stress, 0.0, unknown)]
 
 
 @cache
