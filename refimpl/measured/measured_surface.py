@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, ClassVar, Self
 
@@ -105,7 +105,7 @@ class MeasuredSurface(Surface):
     def reading(self) -> RawHeights:
         """The content of the file, as it is (read once)."""
         pixel = None if self.pixel_size is None else pixel_edges("pixel_size", self.pixel_size)
-        found = read_untrusted(self._file, lambda: read(self._file, self.unit, pixel, self.channel))
+        found = read_untrusted(self._file, partial(read, self._file, self.unit, pixel, self.channel))
         refuse_huge(self._file, found.heights)
         return found
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Self, TypeVar
 
-from verification.framework.files import is_stream, to_json, write_text
+from verification.framework.files import is_stream, rewrite_line, to_json, write_text
 
 if TYPE_CHECKING:
     from refimpl import InputError, Scene
@@ -178,15 +178,13 @@ class StatusLine:
         """Rewrite the line, at most ten times a second."""
         if self._shown and time.monotonic() >= self._next:
             self._next = time.monotonic() + 0.1
-            sys.stderr.write(f"\r\x1b[K{text[:78]}")
-            sys.stderr.flush()
+            rewrite_line(text)
 
     def close(self) -> None:
         """Clear the line; the next text is shown at once."""
         self._next = 0.0
         if self._shown:
-            sys.stderr.write("\r\x1b[K")
-            sys.stderr.flush()
+            rewrite_line("")
 
 
 def judgement(result: Result) -> str:

@@ -24,8 +24,8 @@ import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
+from refimpl.operating_system import interrupts_blocked
 from verification.framework.case import Reported, Result, Unavailable
-from verification.framework.workers import interrupts_blocked
 from verification.solver_suite import process
 from verification.solver_suite.check import Check
 from verification.solver_suite.command import require_timeout
