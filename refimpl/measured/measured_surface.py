@@ -140,7 +140,7 @@ class MeasuredSurface(Surface):
         reading = self._oriented.reading
         return reading.area if self.repeats else extent(reading, self._oriented.centre, offset)
 
-    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+    def heights_on(self, grid: Grid, offset: tuple[float, float]) -> Array:
         if self.repeats:
             return self._repeated(grid, offset)
         if grid.periodic:

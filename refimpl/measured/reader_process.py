@@ -77,7 +77,7 @@ def _end() -> int | None:
     if reader is None:
         return None
     for pipe in (reader.stdin, reader.stdout):
-        with suppress(OSError):  # what was not yet sent
+        with suppress(OSError):  # bytes that were not yet sent
             pipe.close()  # type: ignore[union-attr]  # both are pipes
     try:
         return reader.wait(0.5)

@@ -158,7 +158,7 @@ class SelfAffineRoughness(Surface):
     def to_dict(self) -> dict[str, Any]:
         return {"kind": self.kind, **self.parameters()}
 
-    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+    def heights_on(self, grid: Grid, offset: tuple[float, float]) -> Array:
         if self.long_cut < 2.0 * max(grid.spacings):
             need = f"at least two elements, {2.0 * max(grid.spacings):.3g} m: the grid holds no wave of it"
             raise InputError("long_cut", self.long_cut, need)
