@@ -6,6 +6,7 @@ That a wheel installs and runs elsewhere is checked by `.ci/package`, which take
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import tomllib
@@ -56,6 +57,26 @@ def test_what_ci_installs_has_the_extras_that_tests_use() -> None:
     extras = PROJECT["project"]["optional-dependencies"]
     (own,) = (line for line in extras["dev"] if line.startswith("rough-friction["))
     assert set(own.partition("[")[2].rstrip("]").split(",")) == set(extras) - EXTRAS_TESTED_ELSEWHERE
+
+
+def test_the_tools_are_those_of_the_extra() -> None:
+    """Once as a group, once for versions of pip that know none."""
+    extra = PROJECT["project"]["optional-dependencies"]["dev"]
+    assert PROJECT["dependency-groups"]["dev"] == [each for each in extra if not each.startswith("rough-")]
+
+
+def test_the_model_needs_numpy_scipy_and_three_small_packages() -> None:
+    """Of what is installed with it, the rest is for verification, pictures, files of meshes and reports."""
+    needed = {"numpy", "scipy", "psutil", "threadpoolctl", "tomli-w"}
+    others = {re.split("[>=]", line)[0] for line in PROJECT["project"]["dependencies"]} - needed
+    names = {"scikit-fem": "skfem"}
+    blocked = "".join(f"sys.modules[{names.get(name, name)!r}] = None\n" for name in sorted(others))
+    solve = "import refimpl as rf; assert rf.solve(rf.read_scene('table1-rough'), grid=24).converged"
+    done = subprocess.run(
+        [sys.executable, "-c", f"import sys\n{blocked}{solve}"],
+        cwd=ROOT, capture_output=True, encoding="utf-8", check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
 
 
 OPTIONAL = (

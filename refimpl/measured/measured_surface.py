@@ -71,9 +71,10 @@ class MeasuredSurface(Surface):
     kind: ClassVar[str] = "measured"
 
     def __post_init__(self) -> None:
-        if not isinstance(self.path, str | Path) or not str(self.path) or "\0" in str(self.path):
-            raise InputError("path", self.path, "the path of a file")
-        object.__setattr__(self, "path", Path(self.path))
+        path: object = self.path
+        if not isinstance(path, str | Path) or not str(path) or "\0" in str(path):
+            raise InputError("path", path, "the path of a file")
+        object.__setattr__(self, "path", Path(path))
         if self.unit is not None:
             require_one_of("unit", self.unit, tuple(UNITS))
         if self.pixel_size is not None:

@@ -80,7 +80,7 @@ class Friction:
         return self.tau * active.astype(np.float64)
 
 
-def require_law(law: FrictionLaw) -> None:
+def require_law(law: object) -> None:
     """Raise `InputError` unless this is a law with a jump and a slope that are not negative."""
     if not isinstance(law, FrictionLaw):
         members = "jump, slope, is_linear, traction and held_traction"

@@ -89,7 +89,7 @@ class SelfAffineRoughness(Surface):
 
     def _fix_size(self) -> None:
         """Check the one size that is given, and derive the other from the PSD's integrals."""
-        sizes = {"rms": self.rms, "rms_gradient": self.rms_gradient}
+        sizes: dict[str, Any] = {"rms": self.rms, "rms_gradient": self.rms_gradient}
         present = [name for name, value in sizes.items() if value is not None]
         if len(present) != 1:
             what = "both" if present else "neither"

@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.errors import InputError, require_number, require_size
+from refimpl.errors import InputError, is_whole, require_number, require_size
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.arrays import check_domain, checked, interpolation_notes, sampled, sampling_note
 
@@ -255,12 +255,11 @@ def as_surface(value: Surface | NDArray[Any]) -> Surface:
     raise InputError("surface", value, "a surface, a sum of surfaces or a 2-D array of heights in m")
 
 
-def require_seed(seed: object) -> int:
+def require_seed(seed: Any) -> int:
     """The seed of a random roughness as a whole number; else InputError."""
-    whole = isinstance(seed, int | np.integer) and not isinstance(seed, bool)
-    if not whole or not 0 <= seed < 2**63:  # type: ignore[operator]  # a number, as above
+    if not is_whole(seed) or not 0 <= seed < 2**63:
         raise InputError("seed", seed, "a whole number, 0 <= seed < 2^63")
-    return int(seed)  # type: ignore[call-overload, no-any-return]  # as above
+    return int(seed)
 
 
 def finite(field: str, value: Any, allowed: str) -> float:

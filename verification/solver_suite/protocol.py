@@ -39,6 +39,7 @@ import math
 import numbers
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -310,7 +311,7 @@ def ask(contestant: Contestant, problem: ContactProblem) -> Answer:
     lacking = abilities_of(contestant).lacking(problem)
     if lacking:
         raise Unsupported(f"the solver does not offer: {lacking}")
-    answer = contestant(replace(problem, gap=problem.gap))
+    answer: Any = contestant(replace(problem, gap=problem.gap))
     beside = _numbers(answer) if isinstance(answer, Answer) else {}
     if isinstance(answer, Answer):
         if not isinstance(answer.converged, bool | np.bool_):
