@@ -25,6 +25,8 @@ _DEVICES = re.compile(r"(con|prn|aux|nul|conin\$|conout\$|(com|lpt)[1-9])[ .:]*(
 
 END_SIGNALS = tuple(signal.Signals[name] for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 """Signals of a batch queue, and of a terminal that is closed."""
+MOST_WORKERS = 61 if os.name == "nt" else 1024
+"""Processes of a pool; Windows waits for no more."""
 
 
 def cores() -> int:
@@ -143,6 +145,14 @@ def interrupts_blocked() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def start_tracker() -> None:
+    """Start the tracker of semaphores (POSIX), so that processes started later share it with this one."""
+    if os.name == "posix":
+        from multiprocessing import resource_tracker
+
+        resource_tracker.ensure_running()
 
 
 def terminate_thread(thread: int) -> None:

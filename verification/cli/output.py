@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import itertools
 import math
 import os
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
 WIDTH = 100
 """Columns that tables and texts keep within."""
-MOST_WORKERS = 1024
 PICTURES = (".png", ".svg", ".pdf")
 Selected = TypeVar("Selected")
 
@@ -70,6 +70,7 @@ def check_suffix(option: str, path: Path | None, suffixes: Sequence[str]) -> Non
 def check_workers(option: str, count: int) -> None:
     """Raise InputError unless so many worker processes can be started."""
     from refimpl.errors import require_number
+    from refimpl.operating_system import MOST_WORKERS
 
     require_number(option, count, f"1 to {MOST_WORKERS} worker processes", at_least=1, at_most=MOST_WORKERS)
 
@@ -122,13 +123,15 @@ def plain(item: object) -> object:
 def show(text: str) -> None:
     """Print a text, what a terminal would obey escaped.
 
-    Where whoever reads has closed the pipe, that and all that follows goes nowhere.
+    Where whoever reads has closed the pipe (on Windows, EINVAL), that and all that follows goes nowhere.
     """
     from refimpl.errors import printable
 
     try:
         print("\n".join(map(printable, text.split("\n"))), flush=True)
-    except BrokenPipeError:
+    except OSError as closed:
+        if closed.errno not in (errno.EPIPE, errno.EINVAL):
+            raise
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 

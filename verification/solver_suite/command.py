@@ -94,7 +94,7 @@ class Command:
 
     def __call__(self, problem: ContactProblem) -> Answer:
         """Run the program on one problem. Raises `BadAnswer` for all but a readable claim of success."""
-        with tempfile.TemporaryDirectory(prefix="contact-") as name:
+        with tempfile.TemporaryDirectory(prefix="contact-", ignore_cleanup_errors=True) as name:
             directory = Path(name)
             write_problem(problem, directory)
             self._run(directory)
