@@ -22,6 +22,7 @@ from refimpl.identification.notes import notes
 from refimpl.identification.profile import Profile, quantile
 from refimpl.identification.result import WIDE, Identification, Interval, Prediction
 from refimpl.identification.varying_profile import VaryingProfile
+from refimpl.model.friction import Friction
 from refimpl.scene.parameters import check_tolerances, parameters
 from refimpl.scene.scene import Scene
 
@@ -185,6 +186,8 @@ def _check(
     """Return the names of the further parameters."""
     if not isinstance(scene, Scene):
         raise InputError("scene", scene, "a Scene")
+    if not isinstance(scene.friction, Friction):
+        raise InputError("friction", scene.friction, "a Friction, whose tau and beta are found")
     for load in loads:
         require_number("loads", load, "positive loads in N", above=0)
     further = further_parameters(scene, fit)

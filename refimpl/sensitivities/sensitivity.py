@@ -122,6 +122,8 @@ def _check(scene: Scene, solution: Solution) -> None:
         raise InputError("scene", scene, "a Scene")
     if not isinstance(solution, Solution):
         raise InputError("solution", solution, "a Solution")
+    if not scene.friction.is_linear:
+        raise InputError("friction", scene.friction, "a law that is linear, for derivatives")
     if not solution.contact.any():
         raise InputError("solution", solution.status.value, "a solution in contact")
     if not solution.certified:

@@ -140,7 +140,8 @@ def study(
     ``log`` keeps finished fits, a line each: the study goes on where it was.
     """
     seeds = list(tables.seeds if seeds is None else seeds)
-    found = [json.loads(line) for line in log.read_text().splitlines()] if log and log.exists() else []
+    lines = log.read_text(encoding="utf-8").splitlines() if log and log.exists() else []
+    found = [json.loads(each) for each in lines]
     found = [row for row in found if row["seed"] in seeds]
     line = Progress(len(seeds) - len(found))
     for seed in sorted(set(seeds) - {row["seed"] for row in found}):
@@ -149,7 +150,7 @@ def study(
         except ArithmeticError as failure:
             found.append({"seed": seed, "failure": str(failure)})
         if log is not None:
-            with log.open("a") as file:
+            with log.open("a", encoding="utf-8") as file:
                 file.write(json.dumps(jsonable(found[-1])) + "\n")
         line.tick(f"table {seed}")
     line.close()

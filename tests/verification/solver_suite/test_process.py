@@ -20,6 +20,7 @@ from verification.solver_suite import isolated, process
 from verification.solver_suite.isolated import Named
 from verification.solver_suite.process import Ended, unwinding
 
+pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="signals and forks of POSIX")
 SLEEPER = "sh -c 'echo $$ > pid; exec sleep 600' "
 SLEEPS = """
 import os, time
