@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 import sys
-import time
 from pathlib import Path
 
 import h5py
@@ -134,15 +133,6 @@ def test_zip_bombs_are_not_unpacked(tmp_path: Path) -> None:
     assert bomb.stat().st_size < readers.MAX_BYTES / 500
     with pytest.raises(InputError, match="unpacked"):
         MeasuredSurface(bomb).reading  # noqa: B018  # reading is what raises
-
-
-def test_large_junk_is_refused_at_once(tmp_path: Path) -> None:
-    path = tmp_path / "junk.asc"
-    path.write_bytes(b"junk\n" * 1_000_000)
-    start = time.process_time()
-    with pytest.raises(InputError, match="rows of numbers"):
-        MeasuredSurface(path).reading  # noqa: B018  # likewise
-    assert time.process_time() - start < 1.5  # 5 MB in CPU seconds; the text reader itself needs 4.5
 
 
 @pytest.mark.parametrize("error", [UnboundLocalError("x"), KeyError("\x1b[2J"), Exception("own")])

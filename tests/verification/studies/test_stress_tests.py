@@ -25,7 +25,6 @@ from verification.stress_tests import (
     positive_definite,
     precision,
     study,
-    uniqueness,
 )
 from verification.stress_tests.__main__ import main
 from verification.stress_tests.axes import AXES, states
@@ -170,22 +169,6 @@ def test_support_is_where_tau_acts(monkeypatch: pytest.MonkeyPatch) -> None:
     dry = replace(BALL, friction=rf.Friction(beta=0.3))
     judge.exact_error(dry, rf.solve(dry, 4))
     assert np.array_equal(seen[1], rf.solve(dry, 4).contact)
-
-
-def test_states_are_counted_for_both_orders_of_bodies(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without tau each contact set is the only one, and both solvers find it."""
-    drawn: list[bool] = []
-    scene = uniqueness.scene
-
-    def watched(seed: int, tau: float, *, soft_below: bool = True) -> rf.Scene:
-        drawn.append(soft_below)
-        return scene(seed, tau, soft_below=soft_below)
-
-    monkeypatch.setattr(uniqueness, "scene", watched)
-    found = uniqueness.count(0.0, scenes=4)
-    assert drawn == [True, False, True, False]
-    assert (found.none, found.one, found.several, found.most, found.wrong) == (0, 4, 0, 1, 0)
-    assert found.statuses == {"fft": {"converged": 4}, "dense": {"converged": 4}}
 
 
 def test_conditions_known_values(monkeypatch: pytest.MonkeyPatch) -> None:
