@@ -190,12 +190,12 @@ def test_conjugate_gradients_take_a_step_for_each_eigenvalue(values: list[float]
     assert conditioning.conjugate_gradients(np.diag(many), np.arange(1.0, 1 + len(many))) == expected
 
 
-@judge.judged_on_exceptions
+@judge.caught
 def raising(error: Exception) -> Judged:
     raise error
 
 
-@judge.judged_on_exceptions
+@judge.caught
 def endless() -> Judged:
     while True:
         pass
@@ -206,7 +206,7 @@ def endless() -> Judged:
     [
         ("right", "value", lambda: number(1e-9, 1e-8, "value", "x")),
         ("wrong", "value", lambda: number(float("nan"), 1e-8, "value", "x")),
-        ("honest failure", "InputError", lambda: judge.judged_on_exceptions(rf.Material)(-1.0, 0.3)),
+        ("honest failure", "InputError", lambda: judge.caught(rf.Material)(-1.0, 0.3)),
         ("honest failure", "ArithmeticError", lambda: raising(ArithmeticError("no state"))),
         ("crash", "ZeroDivisionError", lambda: raising(ZeroDivisionError("division by zero"))),
         ("crash", "OutOfTime", endless),
