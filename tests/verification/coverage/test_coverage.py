@@ -14,7 +14,7 @@ from refimpl.accuracy.refinement import FIRST_GRIDS
 from refimpl.model.friction import is_frictionless
 from tests.verification.coverage.made_up import GRIDS, grid_solve, refinement
 from verification.coverage import document
-from verification.coverage.document import grids_of, reference_check, solves
+from verification.coverage.document import reference_check, solves
 from verification.coverage.judge import Coverage, coverages, reference_change, reference_of, summary
 from verification.coverage.scenes import CLASSES, random_scene
 from verification.coverage.store import NUMBERS, grid_solves, refine, refinements
@@ -158,14 +158,6 @@ def test_the_reference_is_checked_on_one_more_grid(tmp_path: Path, monkeypatch: 
     assert found["seeds"] == [8]
     assert found["worst_over_bound"] is not None
     assert reference_check([6], store)["worst_over_bound"] is None
-
-
-def test_periodic_scenes_end_at_a_coarser_reference() -> None:
-    ends = {kind: grids_of(seed)[-1] for seed, kind in enumerate(CLASSES)}
-    assert {kind for kind, end in ends.items() if end == 512} == {"periodic waves", "periodic rough"}
-    to_256 = (32, 64, 80, 96, 112, 128, 160, 192, 224, 256)
-    assert grids_of(0) == (*to_256, 320, 384, 448, 512, 1024)
-    assert grids_of(list(CLASSES).index("periodic waves")) == (*to_256, 512)
 
 
 def test_the_document_solves_what_is_wanting_and_judges_it(
