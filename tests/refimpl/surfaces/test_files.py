@@ -137,15 +137,6 @@ def test_zip_bombs_are_not_unpacked(tmp_path: Path) -> None:
         MeasuredSurface(bomb).reading  # noqa: B018  # reading is what raises
 
 
-def test_large_junk_is_refused_at_once(tmp_path: Path) -> None:
-    path = tmp_path / "junk.asc"
-    path.write_bytes(b"junk\n" * 1_000_000)
-    start = time.process_time()
-    with pytest.raises(InputError, match="rows of numbers"):
-        MeasuredSurface(path).reading  # noqa: B018  # likewise
-    assert time.process_time() - start < 1.5  # 5 MB in CPU seconds; the text reader itself needs 4.5
-
-
 @pytest.mark.parametrize("error", [UnboundLocalError("x"), KeyError("\x1b[2J"), Exception("own")])
 def test_whatever_a_parser_raises_is_a_refusal(error: Exception, tmp_path: Path) -> None:
     def breaks() -> None:
