@@ -1,9 +1,11 @@
-"""Straight edges of a contact along the grid: runs of element faces that come in and out together.
+"""Straight edges of a contact: runs of element faces that come in and out together.
 
-The edge of a contact is a staircase of runs of faces. Where it crosses rows of elements, the runs follow one
-another and their errors cancel. Where it lies along a row - on a strip, a groove, or the flank of a long
-patch - a whole run is in contact or not at once. What counts is how far a run is longer than those at its
-ends: on a strip that is all of it, on a large disc a quarter.
+An edge along a direction v of small whole numbers of elements meets the element centres in the same way after
+every step v, so its errors do not cancel: a whole edge is in contact or not at once. With a step w of
+``det(v, w) = +-1`` every element is ``s v + t w``, and such an edge is a run of faces between two lines of
+elements along s. Along an axis these are the faces of elements; on a strip along (3, 2) there is one for five
+of them. Where an edge crosses lines, the runs follow one another and their errors cancel. What counts is how
+far a run is longer than those at its ends: on a strip that is all of it, on a large disc a quarter.
 """
 
 from __future__ import annotations
@@ -17,11 +19,24 @@ from refimpl.grid.fields import Mask
 from refimpl.grid.grid import Grid
 
 Indices = NDArray[np.intp]
+Field = NDArray[np.int8]  # 1 in contact, 0 without, `_OUTSIDE` beyond the domain
+Step = tuple[int, int]
+
+_OUTSIDE = 2
+_AXES: tuple[tuple[Step, Step], ...] = ((0, 1), (1, 0)), ((1, 0), (0, 1))
+_BETWEEN: tuple[tuple[Step, Step], ...] = (
+    ((1, 1), (0, 1)), ((1, -1), (0, 1)),
+    ((2, 1), (1, 1)), ((2, -1), (1, -1)), ((1, 2), (1, 1)), ((1, -2), (1, -1)),
+    ((3, 1), (1, 0)), ((3, -1), (1, 0)), ((1, 3), (0, 1)), ((1, -3), (0, 1)),
+    ((3, 2), (1, 1)), ((3, -2), (1, -1)), ((2, 3), (1, 1)), ((2, -3), (1, -1)),
+)  # fmt: skip
+"""Steps v and w. On a disc the share of direction v in the variance falls as ``|v|^-3``: 2 % at (3, 2)."""
 
 
 @dataclass(frozen=True)
 class StraightEdges:
-    """``faces`` in straight edges, ``runs`` that they form, and the sum of ``squares`` of their lengths."""
+    """``faces`` and ``runs`` of straight edges along the axes, and the sum of ``squares`` of the lengths of
+    straight edges along all directions."""
 
     faces: int
     runs: int
@@ -32,9 +47,9 @@ NO_STRAIGHT_EDGES = StraightEdges(0, 0, 0)
 
 
 def straight_edges(contact: Mask, grid: Grid) -> StraightEdges:
-    """Return the straight edges along the grid of a contact, an array of the grid's shape.
+    """Return the straight edges of a contact, an array of the grid's shape.
 
-    On a periodic grid a run that crosses the row or column with the least contact counts as two.
+    On a periodic grid a run that crosses the line with the fewest edge elements counts as two.
 
     >>> strip = np.zeros((8, 8), dtype=bool)
     >>> strip[3:5] = True
@@ -43,24 +58,46 @@ def straight_edges(contact: Mask, grid: Grid) -> StraightEdges:
     >>> straight_edges(np.pad([[True, True], [True, True]], 3), Grid.square(1.0, 8))
     StraightEdges(faces=0, runs=0, squares=0)
     """
-    if grid.periodic:
-        for axis in (0, 1):
-            contact = np.roll(contact, -int(contact.sum(axis=1 - axis).argmin()), axis)
-    across, along = _Runs.of(contact, grid.periodic), _Runs.of(contact.T, grid.periodic)
-    excess = np.concatenate([across.excess(along), along.excess(across)])
-    straight = excess[excess > 0]
-    return StraightEdges(int(straight.sum()), straight.size, int((straight**2).sum()))
+    field = contact.astype(np.int8)
+    if not grid.periodic:
+        field = np.pad(field, (0, 1), constant_values=_OUTSIDE)
+    along = np.concatenate([_excess(field, v, w) for v, w in _AXES])
+    if field.shape[0] != field.shape[1]:  # between the axes lines close on squares alone
+        padding = [(0, max(field.shape) + 1 - count) for count in field.shape]
+        field = np.pad(field, padding, constant_values=_OUTSIDE)
+    lengths = np.concatenate([along, *(_excess(field, v, w) for v, w in _BETWEEN)])
+    return StraightEdges(int(along.sum()), int(np.count_nonzero(lengths)), int((lengths**2).sum()))
+
+
+def _excess(field: Field, v: Step, w: Step) -> Indices:
+    """Return how far runs along v are longer than the runs at their ends, for those of three faces at least.
+
+    A shorter one is no longer than they are.
+    """
+    runs, across = _Runs.of(field, v, w), _Runs.of(field, w, v)
+    long = np.flatnonzero(runs.length >= 3)
+    length, line, side = runs.length[long], runs.line[long], runs.side[long]
+    beyond = np.zeros_like(length)
+    for end, step in ((runs.first[long], -1), (runs.last[long], 1)):
+        on = [runs.length_at(line + up, end + step, side) for up in (-1, 1)]
+        corner = np.minimum(end, end + step)
+        turn = [across.length_at(corner, line + up, other) for up in (0, 1) for other in (0, 1)]
+        beyond += np.maximum(*on) + np.maximum.reduce(turn)
+    return np.where(length == runs.count, length, np.maximum(length - beyond, 0))
 
 
 @dataclass(frozen=True)
 class _Runs:
-    """Runs of faces between row ``line`` and the next one, by first and last position along the rows.
+    """Runs along v of faces between an element and the one at w from it, by first and last position s.
 
-    ``side`` is 0 where the row itself is in contact, 1 where the next one is. ``keys`` of all faces rise;
-    ``run_of`` is the run of each.
+    ``side`` is 0 where the element itself is in contact, 1 where the other is. Lines and positions close;
+    positions begin at ``start``, where the fewest faces are. ``keys`` of all faces rise, ``run_of`` is the run
+    of each.
     """
 
+    lines: int
     count: int
+    start: int
     keys: Indices
     run_of: Indices
     line: Indices
@@ -69,23 +106,29 @@ class _Runs:
     side: Indices
 
     @classmethod
-    def of(cls, contact: Mask, periodic: bool) -> _Runs:
-        """Return the runs of a contact; those of a periodic one also between the last row and the first."""
-        following = np.roll(contact, -1, axis=0) if periodic else contact[1:]
-        line, position = np.nonzero(contact[: len(following)] != following)
-        side = following[line, position].astype(np.intp)
-        new = np.ones(line.size + 1, dtype=bool)
-        new[1:-1] = (np.diff(line) != 0) | (np.diff(position) != 1) | (np.diff(side) != 0)
-        first, last = np.flatnonzero(new[:-1]), np.flatnonzero(new[1:])
-        count = contact.shape[1]
+    def of(cls, field: Field, v: Step, w: Step) -> _Runs:
+        """Return the runs of a field of any number of faces."""
+        beyond = np.roll(field, (-w[0], -w[1]), axis=(0, 1))
+        i, j = np.nonzero(field + beyond == 1)
+        det = v[0] * w[1] - v[1] * w[0]
+        lines, count = field.shape[0 if w[0] else 1], field.shape[0 if v[0] else 1]
+        line, position = det * (v[0] * j - v[1] * i) % lines, det * (w[1] * i - w[0] * j) % count
+        start = int(np.bincount(position, minlength=count).argmin())
+        keys = (line * count + (position - start) % count) * 2 + beyond[i, j]
+        keys.sort()
+        new = np.ones(keys.size + 1, dtype=bool)
+        new[1:-1] = (np.diff(keys) != 2) | (keys[1:] // 2 % count == 0)
+        first, last = keys[np.flatnonzero(new[:-1])], keys[np.flatnonzero(new[1:])]
         return cls(
+            lines=lines,
             count=count,
-            keys=(line * count + position) * 2 + side,
+            start=start,
+            keys=keys,
             run_of=np.cumsum(new[:-1]) - 1,
-            line=line[first],
-            first=position[first],
-            last=position[last],
-            side=side[first],
+            line=first // 2 // count,
+            first=first // 2 % count + start,
+            last=last // 2 % count + start,
+            side=first % 2,
         )
 
     @property
@@ -93,26 +136,10 @@ class _Runs:
         """Number of faces of each run."""
         return self.last - self.first + 1
 
-    def length_at(self, line: Indices, position: Indices, side: Indices) -> Indices:
+    def length_at(self, line: Indices, position: Indices, side: Indices | int) -> Indices:
         """Return the length of the run through each of these faces, 0 where there is none."""
         if not self.keys.size:
             return np.zeros_like(line)
-        wanted = (line * self.count + position) * 2 + side
+        wanted = (line % self.lines * self.count + (position - self.start) % self.count) * 2 + side
         place = np.minimum(np.searchsorted(self.keys, wanted), self.keys.size - 1)
-        found = (self.keys[place] == wanted) & (position >= 0) & (position < self.count)
-        return np.where(found, self.length[self.run_of[place]], 0)
-
-    def excess(self, across: _Runs) -> Indices:
-        """Return how far each run is longer than the runs at its ends: of the next rows, and ``across``."""
-        beyond = np.zeros_like(self.line)
-        for end, step in ((self.first, -1), (self.last, 1)):
-            on = [self.length_at(self.line + up, end + step, self.side) for up in (-1, 1)]
-            corner = np.minimum(end, end + step)
-            turn = [
-                across.length_at(corner, self.line + row, np.full_like(corner, side))
-                for row in (0, 1)
-                for side in (0, 1)
-            ]
-            beyond += np.maximum(*on) + np.maximum.reduce(turn)
-        closed = self.length == self.count
-        return np.where(closed, self.length, np.maximum(self.length - beyond, 0))
+        return np.where(self.keys[place] == wanted, self.length[self.run_of[place]], 0)
