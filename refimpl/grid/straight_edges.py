@@ -23,6 +23,7 @@ Field = NDArray[np.int8]  # 1 in contact, 0 without, `_OUTSIDE` beyond the domai
 Step = tuple[int, int]
 
 _OUTSIDE = 2
+_SHORTEST = 3  # faces; a shorter run is never longer than those at its ends
 _AXES: tuple[tuple[Step, Step], ...] = ((0, 1), (1, 0)), ((1, 0), (0, 1))
 _BETWEEN: tuple[tuple[Step, Step], ...] = (
     ((1, 1), (0, 1)), ((1, -1), (0, 1)),
@@ -35,8 +36,11 @@ _BETWEEN: tuple[tuple[Step, Step], ...] = (
 
 @dataclass(frozen=True)
 class StraightEdges:
-    """``faces`` and ``runs`` of straight edges along the axes, and the sum of ``squares`` of the lengths of
-    straight edges along all directions."""
+    """Straight edges by number of ``runs`` and sum of ``squares`` of their lengths.
+
+    ``faces`` are those along the axes that a run has beyond three: from there on edges run along the axis
+    rather than between the axes. Where a run closes on itself all of them count.
+    """
 
     faces: int
     runs: int
@@ -61,29 +65,15 @@ def straight_edges(contact: Mask, grid: Grid) -> StraightEdges:
     field = contact.astype(np.int8)
     if not grid.periodic:
         field = np.pad(field, (0, 1), constant_values=_OUTSIDE)
-    along = np.concatenate([_excess(field, v, w) for v, w in _AXES])
+    axes = [_Runs.of(field, v, w) for v, w in _AXES]
+    lengths = [axes[0].excess(axes[1]), axes[1].excess(axes[0])]
     if field.shape[0] != field.shape[1]:  # between the axes lines close on squares alone
         padding = [(0, max(field.shape) + 1 - count) for count in field.shape]
         field = np.pad(field, padding, constant_values=_OUTSIDE)
-    lengths = np.concatenate([along, *(_excess(field, v, w) for v, w in _BETWEEN)])
-    return StraightEdges(int(along.sum()), int(np.count_nonzero(lengths)), int((lengths**2).sum()))
-
-
-def _excess(field: Field, v: Step, w: Step) -> Indices:
-    """Return how far runs along v are longer than the runs at their ends, for those of three faces at least.
-
-    A shorter one is no longer than they are.
-    """
-    runs, across = _Runs.of(field, v, w), _Runs.of(field, w, v)
-    long = np.flatnonzero(runs.length >= 3)
-    length, line, side = runs.length[long], runs.line[long], runs.side[long]
-    beyond = np.zeros_like(length)
-    for end, step in ((runs.first[long], -1), (runs.last[long], 1)):
-        on = [runs.length_at(line + up, end + step, side) for up in (-1, 1)]
-        corner = np.minimum(end, end + step)
-        turn = [across.length_at(corner, line + up, other) for up in (0, 1) for other in (0, 1)]
-        beyond += np.maximum(*on) + np.maximum.reduce(turn)
-    return np.where(length == runs.count, length, np.maximum(length - beyond, 0))
+    lengths += [_Runs.of(field, v, w).excess(_Runs.of(field, w, v)) for v, w in _BETWEEN]
+    straight = np.concatenate(lengths)
+    faces = sum(int(runs.beyond(_SHORTEST).sum()) for runs in axes)
+    return StraightEdges(faces, int(np.count_nonzero(straight)), int((straight**2).sum()))
 
 
 @dataclass(frozen=True)
@@ -143,3 +133,19 @@ class _Runs:
         wanted = (line % self.lines * self.count + (position - self.start) % self.count) * 2 + side
         place = np.minimum(np.searchsorted(self.keys, wanted), self.keys.size - 1)
         return np.where(self.keys[place] == wanted, self.length[self.run_of[place]], 0)
+
+    def beyond(self, other: Indices | int) -> Indices:
+        """Return how far each run is longer than another length, and all of a run that closes."""
+        return np.where(self.length == self.count, self.length, np.maximum(self.length - other, 0))
+
+    def excess(self, across: _Runs) -> Indices:
+        """Return how far each run is longer than those at its ends: of the lines beside it, and ``across``."""
+        long = np.flatnonzero(self.length >= _SHORTEST)
+        line, side, ends = self.line[long], self.side[long], self.length.copy()
+        ends[long] = 0
+        for end, step in ((self.first[long], -1), (self.last[long], 1)):
+            on = [self.length_at(line + up, end + step, side) for up in (-1, 1)]
+            corner = np.minimum(end, end + step)
+            turn = [across.length_at(corner, line + up, other) for up in (0, 1) for other in (0, 1)]
+            ends[long] += np.maximum(*on) + np.maximum.reduce(turn)
+        return self.beyond(ends)
