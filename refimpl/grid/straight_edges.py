@@ -53,8 +53,6 @@ NO_STRAIGHT_EDGES = StraightEdges(0, 0, 0)
 def straight_edges(contact: Mask, grid: Grid) -> StraightEdges:
     """Return the straight edges of a contact, an array of the grid's shape.
 
-    On a periodic grid a run that crosses the line with the fewest edge elements counts as two.
-
     >>> strip = np.zeros((8, 8), dtype=bool)
     >>> strip[3:5] = True
     >>> straight_edges(strip, Grid.square(1.0, 8, periodic=True))
@@ -80,14 +78,12 @@ def straight_edges(contact: Mask, grid: Grid) -> StraightEdges:
 class _Runs:
     """Runs along v of faces between an element and the one at w from it, by first and last position s.
 
-    ``side`` is 0 where the element itself is in contact, 1 where the other is. Lines and positions close;
-    positions begin at ``start``, where the fewest faces are. ``keys`` of all faces rise, ``run_of`` is the run
-    of each.
+    ``side`` is 0 where the element itself is in contact, 1 where the other is. Lines and positions close: a run
+    may begin before position 0. ``keys`` of all faces rise, ``run_of`` is the run of each.
     """
 
     lines: int
     count: int
-    start: int
     keys: Indices
     run_of: Indices
     line: Indices
@@ -97,29 +93,26 @@ class _Runs:
 
     @classmethod
     def of(cls, field: Field, v: Step, w: Step) -> _Runs:
-        """Return the runs of a field of any number of faces."""
-        beyond = np.roll(field, (-w[0], -w[1]), axis=(0, 1))
-        i, j = np.nonzero(field + beyond == 1)
+        """Return the runs of a field."""
+        other = np.roll(field, (-w[0], -w[1]), axis=(0, 1))
+        i, j = np.nonzero(field + other == 1)
         det = v[0] * w[1] - v[1] * w[0]
         lines, count = field.shape[0 if w[0] else 1], field.shape[0 if v[0] else 1]
         line, position = det * (v[0] * j - v[1] * i) % lines, det * (w[1] * i - w[0] * j) % count
-        start = int(np.bincount(position, minlength=count).argmin())
-        keys = (line * count + (position - start) % count) * 2 + beyond[i, j]
-        keys.sort()
+        keys = np.sort((line * count + position) * 2 + other[i, j])
         new = np.ones(keys.size + 1, dtype=bool)
         new[1:-1] = (np.diff(keys) != 2) | (keys[1:] // 2 % count == 0)
         first, last = keys[np.flatnonzero(new[:-1])], keys[np.flatnonzero(new[1:])]
-        return cls(
-            lines=lines,
-            count=count,
-            start=start,
-            keys=keys,
-            run_of=np.cumsum(new[:-1]) - 1,
-            line=first // 2 // count,
-            first=first // 2 % count + start,
-            last=last // 2 % count + start,
-            side=first % 2,
-        )
+        line, side, first, last = first // 2 // count, first % 2, first // 2 % count, last // 2 % count
+        # a run at the end of a line goes on at its beginning
+        heads, tails = (np.flatnonzero(np.diff(line, **{end: -1})) for end in ("prepend", "append"))
+        joined = (first[heads] == 0) & (last[tails] == count - 1) & (side[heads] == side[tails]) & (heads < tails)
+        heads, tails = heads[joined], tails[joined]
+        first[heads] = first[tails] - count
+        kept, to = np.ones(line.size, dtype=bool), np.arange(line.size)
+        kept[tails], to[tails] = False, heads
+        run_of = (np.cumsum(kept) - 1)[to][np.cumsum(new[:-1]) - 1]
+        return cls(lines, count, keys, run_of, line[kept], first[kept], last[kept], side[kept])
 
     @property
     def length(self) -> Indices:
@@ -130,7 +123,7 @@ class _Runs:
         """Return the length of the run through each of these faces, 0 where there is none."""
         if not self.keys.size:
             return np.zeros_like(line)
-        wanted = (line % self.lines * self.count + (position - self.start) % self.count) * 2 + side
+        wanted = (line % self.lines * self.count + position % self.count) * 2 + side
         place = np.minimum(np.searchsorted(self.keys, wanted), self.keys.size - 1)
         return np.where(self.keys[place] == wanted, self.length[self.run_of[place]], 0)
 
