@@ -102,7 +102,7 @@ def sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = 
     }
     solved = {name: derivatives for name, (derivatives, _) in quotients.items()}
     # 95 % bound of what counting elements in two solves leaves uncertain, as in the error bars of one grid
-    counting = 2 * math.sqrt(2) * AREA.scatter * float(area_scatter([solution.features])[0])
+    counting = 2 * math.sqrt(2) * AREA.scatter * area_scatter(solution.features)
     counted = {
         name: (derivatives["contact_area"], counting / span)
         for name, (derivatives, span) in quotients.items()
