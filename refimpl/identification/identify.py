@@ -96,7 +96,6 @@ def _result(
     units = np.array([1.0, 1.0, *(values[name].value for name in further)])
     factor = _best_factor(covariance, np.mean([one.slopes for one in fitted.responses], axis=0))
     gradient = np.array([factor, 1.0] + [0.0] * len(further))
-    degrees = max(len(rows) - len(values), 0)
     return Identification(
         rows=rows,
         values=values,
@@ -108,8 +107,8 @@ def _result(
         residuals=tuple(map(float, fitted.residuals)),
         deleted=tuple(map(float, fitted.deleted)),
         chi_square=fitted.chi_square,
-        degrees=degrees,
-        probability=float(chi2.sf(fitted.chi_square, degrees)) if degrees else 1.0,
+        degrees=fitted.degrees,
+        probability=float(chi2.sf(fitted.chi_square, fitted.degrees)) if fitted.degrees else 1.0,
         laws=compare(rows, fitted),
         passes=fitted.passes,
         fitted=fitted,
