@@ -24,6 +24,11 @@ class Chapter:
     studies: tuple[str, ...] = ()
 
     @property
+    def body(self) -> bool:
+        """True for what a reader needs beside the claims; the other chapters stand with every check."""
+        return self.anchor in ("validation", "limits")
+
+    @property
     def folded(self) -> bool:
         """True for appendices of the report."""
         return self.title.startswith("Appendix I")

@@ -93,8 +93,10 @@ def _own(evidence: Evidence, picture: Any) -> dict[str, Any]:
         "scatter": picture(AGREEMENT, agreement.series(agreement.compared(numbers))) if numbers else None,
         "parts": shown(claims, numbers, evidence.cases),
         "chapters": [
-            (chapter, subjects_of(chapter, evidence), exhibits_of(chapter, evidence))
+            (chapter, subjects, exhibits)
             for chapter in all_chapters(evidence)
+            for subjects, exhibits in [(subjects_of(chapter, evidence), exhibits_of(chapter, evidence))]
+            if subjects or exhibits or chapter.body
         ],
     }
 
