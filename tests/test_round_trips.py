@@ -75,6 +75,7 @@ KNOWN = {
 }
 ANY_SURFACE = st.one_of(*(instances(kind, KNOWN) for kind in KINDS.values()))
 KNOWN |= {
+    ("Scene", "friction"): instances(rf.Friction, KNOWN),  # of the laws, what a scene file may hold
     ("Body", "surface"): st.lists(ANY_SURFACE, min_size=1, max_size=3).map(lambda p: sum(p[1:], start=p[0])),
 }
 FEW = settings(max_examples=25, derandomize=True, database=None)

@@ -61,7 +61,7 @@ def _reader() -> subprocess.Popen[bytes]:
     own = os.getpid()
     if own not in _started or _started[own].poll() is not None:
         _started[own] = subprocess.Popen(
-            [sys.executable, "-c", _CODE],
+            [sys.executable, "-P", "-c", _CODE],  # -P: no modules from the folder of the files
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

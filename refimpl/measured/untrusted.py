@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
@@ -42,10 +41,11 @@ def _read_or_refuse(path: Path, load: Callable[[], T]) -> T:
 
 
 def _is_binary(path: Path) -> bool:
-    if not os.path.isfile(path):  # no error for long names
+    try:
+        with path.open("rb") as file:
+            head = file.read(_HEAD)
+    except OSError:  # the reader says which
         return False
-    with path.open("rb") as file:
-        head = file.read(_HEAD)
     return b"\0" in head and not head.startswith(_NUMPY)
 
 

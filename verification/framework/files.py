@@ -87,7 +87,7 @@ def _temporary(path: Path) -> Iterator[tuple[Path, Path]]:
 def _remove_left(folder: Path, begin: str, suffix: str) -> None:
     """Remove temporary files of this machine whose writers are gone."""
     for left in folder.glob(f"{glob.escape(begin)}*-????????{glob.escape(suffix)}"):
-        import psutil
+        import psutil  # here and not above: there are hardly ever any
 
         writer = left.name.removeprefix(begin).partition("-")[0]
         if writer.isdecimal() and not psutil.pid_exists(int(writer)):
