@@ -12,7 +12,7 @@ import pytest
 
 from reports.result_files import read_result
 from verification.benchmarks import rounds
-from verification.benchmarks.__main__ import append, main
+from verification.benchmarks.__main__ import main
 from verification.benchmarks.codes import ALONE, OWN, SHEARED, SLOPED, codes
 from verification.benchmarks.problems import problem
 from verification.benchmarks.rounds import Failed, Turns, in_turns, tuned, tuned_turns
@@ -197,13 +197,6 @@ def test_the_solver_alone_is_compared_as_peers_are() -> None:
     assert table["fastest peer, solver alone, again"] == {"code": "peer", "seconds over ours": 2.0}
     all_turns[2].rounds[0]["seconds again"] = None  # too long to be repeated
     assert "fastest peer, solver alone, again" not in ratios(all_turns)
-
-
-def test_a_record_only_grows(tmp_path: Path) -> None:
-    file = tmp_path / "record.json"
-    append({"rows": [1]}, file)
-    append({"rows": [2]}, file)
-    assert read_result(file)["runs"] == [{"rows": [1]}, {"rows": [2]}]
 
 
 @pytest.mark.parametrize("name", [OWN, ALONE, SHEARED, SLOPED])
