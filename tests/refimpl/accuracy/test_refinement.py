@@ -51,6 +51,14 @@ def test_a_peaks_bar_is_predicted_to_fall_as_the_square(accuracy: float) -> None
     assert estimates(opened)["max_pressure"].orders == (2.0, 2.0)
 
 
+def test_a_part_that_does_not_fall_is_predicted_to_the_largest_refinement() -> None:
+    """Active set of tau: 3 % of the peak on both last grids."""
+    shares = {32: 0.0, 64: 0.0, 128: 0.03, 256: 0.03}
+    parts = {M: {"max_pressure": {"active set": share * PEAK}} for M, share in shares.items()}
+    opened = [replace(made_up(M), parts=own) for M, own in parts.items()]
+    assert next_grid(opened, 0.0172, "max_pressure", [32 * k for k in range(9, 80)]) == 8 * 256
+
+
 def test_a_zero_that_is_exact_has_no_bar() -> None:
     opened = [made_up(M) for M in FIRST_GRIDS]
     assert relative_bound(opened, "binormal_force") == 0.0

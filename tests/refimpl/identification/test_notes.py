@@ -21,9 +21,8 @@ LOADS, SIZE = (1.0, 2.0, 5.0, 10.0, 20.0), math.log(2.0)
 NONE = Response((0.0, 0.0), 0.0, (1.0, 1.0), 0.0, 0.0, 0.0, {}, 0.1, 0.0, 0.0, (1e6,), (1e-6,), 1, ())
 
 
-@pytest.fixture(scope="module")
-def found() -> Identification:
-    """Of mu = tau / P + beta + ln(H / 1e8) P / 100 at tau = 2, beta = 0.3, H = 2e8 Pa."""
+def linear_fit(above: float = 0.0) -> Identification:
+    """Of mu = tau / P + beta + ln(H / 1e8) P / 100 at tau = 2, beta = 0.3, H = 2e8 Pa, the third row off."""
 
     def linear(self: Forward, scene: rf.Scene, theta: Any, tolerances: Any = None) -> Response:
         self.solves += 1
@@ -34,11 +33,24 @@ def found() -> Identification:
 
     hard = replace(SCENE.lower, material=replace(SCENE.lower.material, hardness=1.5e8))
     rows = [Row(load, 2 / load + 0.3 + SIZE * load / 100, 1e-4) for load in LOADS]
+    rows[2] = replace(rows[2], mu=rows[2].mu + above)
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(Forward, "respond", linear)
         of = {"load": 0.02, "upper.material.E": 0.5}
         scene = replace(SCENE, lower=hard)
         return identify(scene, rows, 8, loads=(40.0, 3.0), fit=["hardness"], tolerances=of)
+
+
+@pytest.fixture(scope="module")
+def found() -> Identification:
+    return linear_fit()
+
+
+def test_a_row_above_the_fit_is_an_outlier_with_a_positive_residual() -> None:
+    made = linear_fit(above=0.01)
+    assert made.residuals[2] == max(made.residuals, key=abs)
+    assert made.residuals[2] > 10
+    assert any(note.startswith("row 3 (5 N) is off by +") for note in made.warnings)
 
 
 def test_an_identification_of_a_linear_model(found: Identification) -> None:

@@ -163,6 +163,19 @@ def test_a_contact_that_never_settles_is_given_up_after_sixty_passes() -> None:
     assert not one.settled
 
 
+def test_a_second_approach_starts_from_the_contact_of_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    one, begun = scheme(16), list[Mask]()
+    iterate = one._iterate
+    monkeypatch.setattr(
+        one, "_iterate", lambda u, inside, **how: (begun.append(inside), iterate(u, inside, **how))[1]
+    )
+    one.normal_force(4e-6, FixedSet(one.problem.gap < 0))
+    found, calls = one.pressure > 0, len(begun)
+    one.normal_force(6e-6, FixedSet(one.problem.gap < 0))
+    assert 0 < found.sum() < begun[0].sum() == (one.problem.gap < 4e-6).sum()
+    assert np.array_equal(begun[calls], found)
+
+
 def test_approaches_stay_within_their_bracket(monkeypatch: pytest.MonkeyPatch) -> None:
     """A late and steep force: secants and growth would leave the bracket, so that it is halved."""
 

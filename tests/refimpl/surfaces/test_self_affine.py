@@ -378,3 +378,12 @@ def test_a_torus_holds_so_many_waves_and_no_more() -> None:
     ((factor, limit),) = refused
     assert factor == pytest.approx((2 * 8191 + 1) / MAX_WAVES)
     assert limit == "8192 waves an axis"
+
+
+def test_a_lay_is_described_where_there_is_one() -> None:
+    grid = Grid.square(SIDE, 256)
+    (text,) = rough(anisotropy=2.0, lay=math.pi / 6).describe(grid)
+    assert "seed 1: Hurst exponent 0.8" in text
+    assert "stretched 2 times along a lay of 30 degrees; rms height" in text
+    assert "(rms given)" in text
+    assert "stretched" not in rough().describe(grid)[0]

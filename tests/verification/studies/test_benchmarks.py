@@ -12,11 +12,11 @@ import pytest
 
 from reports.result_files import read_result
 from verification.benchmarks import rounds
-from verification.benchmarks.__main__ import append, main
+from verification.benchmarks.__main__ import main
 from verification.benchmarks.codes import ALONE, OWN, SHEARED, SLOPED, codes
 from verification.benchmarks.problems import problem
-from verification.benchmarks.rounds import Failed, Turns, error, in_turns, tuned, tuned_turns
-from verification.benchmarks.summary import ratios, row
+from verification.benchmarks.rounds import Failed, Turns, in_turns, tuned, tuned_turns
+from verification.benchmarks.summary import ratios
 from verification.benchmarks.timed import residuals_of
 from verification.solver_suite import own, reference_solution
 
@@ -197,27 +197,6 @@ def test_the_solver_alone_is_compared_as_peers_are() -> None:
     assert table["fastest peer, solver alone, again"] == {"code": "peer", "seconds over ours": 2.0}
     all_turns[2].rounds[0]["seconds again"] = None  # too long to be repeated
     assert "fastest peer, solver alone, again" not in ratios(all_turns)
-
-
-def test_rows_count_convolutions_on_the_padded_box() -> None:
-    one = turns(OWN, 1.0, 2.0)
-    one.rounds[-1]["operations"] = {"n log2 n": 640.0}
-    entry: Any = row(one)
-    assert entry["convolution equivalents"] == 640.0 / (16 * 4)
-    assert entry["times one convolution"]["median"] == 3.0
-    assert entry["memory of the solve"]["median"] == 2e8
-    assert entry["seconds again"] == {"median": 0.375, "least": 0.25, "most": 0.5}
-    assert entry["meets the target"] is True
-    one.rounds[0] |= {"gap": 0.02, "residual": 3e-9}  # with coupling the certificate counts
-    assert error(one.rounds[0]) == 3e-9
-    assert "seconds" not in row(Turns("absent", "smooth", 64, 1e-8, failure="left out"))
-
-
-def test_a_record_only_grows(tmp_path: Path) -> None:
-    file = tmp_path / "record.json"
-    append({"rows": [1]}, file)
-    append({"rows": [2]}, file)
-    assert read_result(file)["runs"] == [{"rows": [1]}, {"rows": [2]}]
 
 
 @pytest.mark.parametrize("name", [OWN, ALONE, SHEARED, SLOPED])

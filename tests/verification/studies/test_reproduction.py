@@ -15,7 +15,6 @@ from verification.cases.appendix_a.fem3d_answer import STEEPEST
 from verification.cases.paper.contact import FIG6_TOLERANCE
 from verification.framework import registry
 from verification.reproduction import ensemble, fig6, fig8, slides, table3
-from verification.reproduction.errata import ERRATA
 from verification.reproduction.printed import FIG6_RMS, MESHES, SIDE, TABLE2, TABLE3
 from verification.reproduction.table1 import SMOOTH, hertz, rough
 from verification.reproduction.tangential import displacements, element_integrals
@@ -39,10 +38,6 @@ def test_every_table_and_figure_has_a_case_in_both_tiers() -> None:
         assert quick, name
         for i in quick:
             assert i == "reproduction/fig6d" or cases[f"{i}-full"] == "full"
-
-
-def test_errata_are_of_different_places() -> None:
-    assert len({e.slug for e in ERRATA}) == len(ERRATA) >= 9
 
 
 def test_interval_covers_the_mean_as_often_as_it_says() -> None:

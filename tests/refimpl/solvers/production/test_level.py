@@ -181,6 +181,15 @@ def test_how_a_solve_ended(monkeypatch: pytest.MonkeyPatch) -> None:
     assert stagnating.result(1e-8).status is rf.Status.STAGNATED
 
 
+@pytest.mark.parametrize("inside", [True, False])
+def test_outdated_slopes_of_facets_count_where_there_is_contact(inside: bool) -> None:
+    solver = level_solver(problem_of(BALL, 16, oblique=True, slope_correction=True))
+    assert solver.solve(1e-8, FixedSet(solver.problem.gap < 0))
+    slopes, where = solver.lagged.slopes, solver.contact == inside
+    solver.lagged.slopes = Slopes(slopes.tan_x + 1e-3 * where, slopes.tan_y)
+    assert (solver.lagged.update() >= 0.999e-3) is inside
+
+
 @pytest.mark.parametrize("slope_correction", [False, True])
 def test_the_residual_is_what_the_certificate_finds(slope_correction: bool) -> None:
     """Also of facet tractions, at the slopes of the update before: these are returned with the state.
