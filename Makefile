@@ -65,8 +65,9 @@ setup: $(READY)
 
 $(READY): pyproject.toml constraints.txt
 	test -d .venv || $(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt pip setuptools
 	$(BIN)/python -m pip install -qq --disable-pip-version-check \
-		-c constraints.txt -e ".[instrument,rigorous,fast,dev]"
+		-c constraints.txt -e ".[instrument,rigorous,dev]"
 	@touch $@
 
 clean:

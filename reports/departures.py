@@ -1,4 +1,4 @@
-"""What result files state otherwise than the code: their cases, dates and commits.
+"""Departures of result files from the code: other cases, dates and commits.
 
 A file can be consistent in itself and yet be of another version, or forged. Compared are the claims, metrics
 and tolerances that this version registers; values can only be compared by another run.

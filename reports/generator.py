@@ -19,7 +19,7 @@ from reports.evidence import Evidence, gathered, groups
 from reports.findings import by_claim
 from reports.front_page import front_page
 from reports.pictures import Album
-from reports.results import OTHER_SHAPE, Case, CaseDataError, ResultFileError
+from reports.results import Case, CaseDataError, shaped
 from reports.revisions import revisions_of
 from reports.text import cell, interval, judgement, number, symbols
 
@@ -41,17 +41,13 @@ def render(
 
     def case_pictures(case: Case) -> list[Mapping[str, Any] | None]:
         progress(case["id"])
-        try:
+        with shaped(f"data of case {case['id']!r}", lambda text: CaseDataError(text, case["origin"])):
             return [album.add(figure, case["data"], case["title"]) for figure in figures_of(case["id"])]
-        except OTHER_SHAPE as broken:
-            raise CaseDataError(f"data of case {case['id']!r}: {broken}", case["origin"]) from broken
 
     def one_picture(figure: Figure, data: Mapping[str, Any]) -> Mapping[str, Any] | None:
         progress(figure.caption)
-        try:
+        with shaped(f"data of the figure {figure.caption!r}"):
             return album.add(figure, data)
-        except OTHER_SHAPE as broken:
-            raise ResultFileError(f"data of the figure {figure.caption!r}: {broken}") from broken
 
     environment = Environment(
         loader=PackageLoader("reports"),
@@ -61,26 +57,27 @@ def render(
         lstrip_blocks=True,
     )
     environment.filters.update(number=number, anchor=anchor, symbols=symbols, label=label)
-    shared = {
-        "run": evidence.run,
-        "evidence": evidence,
-        "provenance": evidence.run["provenance"],
-        "departures": departures,
-        "revisions": revisions_of(evidence),
-        "solver": evidence.solver,
-        "changes": None if against is None else compared(against, results),
-        "judgement": judgement,
-        "interval": interval,
-        "facts": facts,
-        "rerun": lambda case: rerun(case, evidence),
-        "pictures": case_pictures,
-        "picture": one_picture,
-        "cell": cell,
-        "groups": groups(evidence),
-    }
-    own = {} if evidence.solver is not None else _own(evidence, shared["picture"])
     template = environment.get_template("solver.html" if evidence.solver is not None else "report.html")
-    page = template.render(**shared, **own)
+    with shaped("a study"):  # its file is checked by being shown
+        own = {} if evidence.solver is not None else _own(evidence, one_picture)
+        page = template.render(
+            run=evidence.run,
+            evidence=evidence,
+            provenance=evidence.run["provenance"],
+            departures=departures,
+            revisions=revisions_of(evidence),
+            solver=evidence.solver,
+            changes=None if against is None else compared(against, results),
+            judgement=judgement,
+            interval=interval,
+            facts=facts,
+            rerun=lambda case: rerun(case, evidence),
+            pictures=case_pictures,
+            picture=one_picture,
+            cell=cell,
+            groups=groups(evidence),
+            **own,
+        )
     return page.replace("/* figures */", album.styles)
 
 

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
+
+from jinja2 import UndefinedError
 
 FORMAT = "rough-friction results, version 1"
 STATUSES = ("pass", "fail", "error", "unavailable")
@@ -77,8 +80,8 @@ PROVENANCE: Mapping[str, Kind] = {
 SOLVER: Mapping[str, Kind] = {"name": _text}
 
 
-OTHER_SHAPE = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
-"""Exceptions where data are not of the shape that a table or a figure needs."""
+OTHER_SHAPE = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError, UndefinedError)
+"""Exceptions where data are not of the shape that a table, a figure or a template needs."""
 
 
 class ResultFileError(ValueError):
@@ -91,6 +94,17 @@ class CaseDataError(ResultFileError):
     def __init__(self, message: str, origin: Mapping[str, Any] | None) -> None:
         super().__init__(message)
         self.origin = origin
+
+
+@contextmanager
+def shaped(what: str, error: Callable[[str], ResultFileError] = ResultFileError) -> Iterator[None]:
+    """Raise ``error`` where data are not of the shape that the block needs; other refusals stay."""
+    try:
+        yield
+    except ResultFileError:
+        raise
+    except OTHER_SHAPE as broken:
+        raise error(f"{what}: {broken}") from broken
 
 
 def check(results: object) -> Mapping[str, Any]:

@@ -6,14 +6,17 @@ That a wheel installs and runs elsewhere is checked by `.ci/package`, which take
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import tomllib
+from importlib.metadata import distributions
 from pathlib import Path
 
 import pytest
 
 from tests.documents import ROOT
+from verification.cli import licences
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 DATA: dict[str, list[str]] = PROJECT["tool"]["setuptools"]["package-data"]
@@ -56,6 +59,37 @@ def test_what_ci_installs_has_the_extras_that_tests_use() -> None:
     extras = PROJECT["project"]["optional-dependencies"]
     (own,) = (line for line in extras["dev"] if line.startswith("rough-friction["))
     assert set(own.partition("[")[2].rstrip("]").split(",")) == set(extras) - EXTRAS_TESTED_ELSEWHERE
+
+
+def test_the_table_of_licences_is_that_of_the_pinned_packages() -> None:
+    table = licences.table()
+    assert {name: version for name, version, *_ in table.values()} == licences.pinned()
+    installed = {licences.normalised(one.metadata["Name"]): one for one in distributions()}
+    for name, version, licence, by in table.values():
+        if name in installed and installed[name].version == version:
+            assert licence == licences.licence(installed[name])
+        if "GPL" in licence:
+            assert (name, by) in (("ducc0", "fast"), ("igor2", "instrument"), ("python-flint", "rigorous"))
+
+
+def test_the_tools_are_those_of_the_extra() -> None:
+    """Once as a group, once for versions of pip that know none."""
+    extra = PROJECT["project"]["optional-dependencies"]["dev"]
+    assert PROJECT["dependency-groups"]["dev"] == [each for each in extra if not each.startswith("rough-")]
+
+
+def test_the_model_needs_numpy_scipy_and_three_small_packages() -> None:
+    """Of what is installed with it, the rest is for verification, pictures, files of meshes and reports."""
+    needed = {"numpy", "scipy", "psutil", "threadpoolctl", "tomli-w"}
+    others = {re.split("[>=]", line)[0] for line in PROJECT["project"]["dependencies"]} - needed
+    names = {"scikit-fem": "skfem"}
+    blocked = "".join(f"sys.modules[{names.get(name, name)!r}] = None\n" for name in sorted(others))
+    solve = "import refimpl as rf; assert rf.solve(rf.read_scene('table1-rough'), grid=24).converged"
+    done = subprocess.run(
+        [sys.executable, "-c", f"import sys\n{blocked}{solve}"],
+        cwd=ROOT, capture_output=True, encoding="utf-8", check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
 
 
 OPTIONAL = (

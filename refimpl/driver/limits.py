@@ -16,9 +16,9 @@ _GROWTH = 1.3  # seconds over those of the same work an element: iterations grow
 
 @dataclass(frozen=True)
 class Limits:
-    """``max_grid`` elements along the longer side, ``max_seconds`` in all, ``max_memory`` of the process (bytes):
-    estimated arrays of a grid beside what is resident before they are made.
+    """``max_grid`` elements along the longer side, ``max_seconds`` in all, ``max_memory`` in all (bytes).
 
+    The memory is the estimate of a grid's arrays and what is resident before they are made.
     Raises `InputError` for a limit that is not positive.
     """
 

@@ -42,7 +42,9 @@ def nayak(z: Array, pixel: Pixel) -> float:
 
 
 def _mean_square(values: Array) -> float:
-    return float(np.nanmean(values**2))
+    """NaN where nothing was measured: a map may have no two neighbours."""
+    known = values[np.isfinite(values)]
+    return float(np.mean(known**2)) if known.size else math.nan
 
 
 @dataclass(frozen=True)

@@ -34,15 +34,16 @@ class Crop:
     centre: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
-        name, slack = self.reading.name, ROUNDING * max(self.lengths)
-        most = extent(self.reading, self._middle)
+        name, most = self.reading.name, extent(self.reading, self._middle)
         room = tuple((whole - length) / 2.0 for whole, length in zip(most, self.lengths, strict=True))
-        if min(room) < -slack / 2:
-            about = "" if self.centre is None else " about the centre"
-            allowed = f"at most the measured {size_text(most)} m of {name}{about}"
-            raise InputError("side", self.lengths[room.index(min(room))], allowed)
+        for length, left in zip(self.lengths, room, strict=True):
+            if left < -ROUNDING * length / 2:
+                about = "" if self.centre is None else " about the centre"
+                raise InputError("side", length, f"at most the measured {size_text(most)} m of {name}{about}")
         moved = extent(self.reading, self._middle, self.offset)
-        if any(length - whole > 2 * slack for length, whole in zip(self.lengths, moved, strict=True)):
+        if any(
+            length - whole > 2 * ROUNDING * length for length, whole in zip(self.lengths, moved, strict=True)
+        ):
             fits = f"; a size of {size_text(moved)} m fits this offset" if min(moved) > 0 else ""
             raise InputError("offset", self.offset, f"at most {size_text(room)} m either way in {name}{fits}")
         counts = tuple(s.stop - s.start for s in self.points)
@@ -62,8 +63,8 @@ class Crop:
     @property
     def points(self) -> tuple[slice, slice]:
         """The points whose centres lie in the window."""
-        slack = ROUNDING * max(self.lengths)
-        i, j = (self.positions(np.array([-slack, self.lengths[axis] + slack]), axis) for axis in (0, 1))
+        ends = np.array([-ROUNDING, 1 + ROUNDING])
+        i, j = (self.positions(ends * length, axis) for axis, length in enumerate(self.lengths))
         return slice(math.ceil(i[0]), math.floor(i[1]) + 1), slice(math.ceil(j[0]), math.floor(j[1]) + 1)
 
     @property

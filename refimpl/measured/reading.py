@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from refimpl.errors import InputError, size_text
+from refimpl.errors import InputError, require_size, size_text
 from refimpl.grid import Array
 
 MAX_BYTES = 256 * 2**20
@@ -89,8 +89,8 @@ class Overrides:
             notes.append("a pixel of {} m is used; the file states {} m".format(*sizes))
         used = self.unit or unit or "m"
         edges = self.pixel_size or pixel or (1.0, 1.0)
-        if not all(0 < edge < np.inf for edge in edges):
-            raise InputError("path", f"pixels of {edges} m in {name}", "pixels of positive size")
+        for edge in edges:
+            require_size(f"pixel of {name}", edge, "a positive length in m")
         return ASCII.get(used, used), edges, tuple(notes)
 
 

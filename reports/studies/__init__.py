@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from reports.exhibit import Exhibit
-from reports.results import OTHER_SHAPE, ResultFileError
+from reports.results import shaped
 
 
 def exhibit(name: str, document: Mapping[str, Any]) -> Exhibit:
@@ -16,8 +16,6 @@ def exhibit(name: str, document: Mapping[str, Any]) -> Exhibit:
     Raises ResultFileError where the file lacks what the module needs.
     """
     build = importlib.import_module(f"{__name__}.{name}").build
-    try:
+    with shaped(f"the study {name}"):
         built: Exhibit = build(document)
-    except OTHER_SHAPE as lacking:
-        raise ResultFileError(f"the study {name} lacks {lacking}") from lacking
     return built

@@ -41,4 +41,4 @@ def test_a_consistent_forgery_is_named_on_the_first_page() -> None:
         "old.json: its commit '0000' is none of this checkout's",
     ]
     page = render(results(*forged), departures=said)
-    assert page.index("a/1 (100, not 0.1)") < page.index("What holds")
+    assert page.index("a/1 (100, not 0.1)") < page.index("How to run it again")

@@ -8,11 +8,15 @@ import sys
 from datetime import UTC, datetime
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from verification.cli.options import Options, option
 from verification.cli.output import StatusLine, check_outputs, columns, emit, refusal, wrapped
 from verification.cli.pdf import PAPERS, compacts, printed
+
+if TYPE_CHECKING:
+    from verification.framework.case import Case
+    from verification.solver_suite.check import Check
 
 EPILOG = """examples:
   rough-friction verify --tier quick --json results.json
@@ -89,11 +93,11 @@ def registered() -> dict[str, dict[str, Any]]:
     from verification.framework.registry import load
     from verification.solver_suite import convergence, suite
 
-    checks = (*suite.thorough(), *convergence.CASES)
-    claims = [(check, check.description, "") for check in checks]
+    rows: list[tuple[Case | Check, str, str]] = [(case, case.claim, case.tier.value) for case in load()]
+    rows += [(check, check.description, "") for check in (*suite.thorough(), *convergence.CASES)]
     return {
         case.id: {"claim": claim, "metric": case.metric.value, "tolerance": case.tolerance, "tier": tier}
-        for case, claim, tier in (*claims, *((case, case.claim, case.tier.value) for case in load()))
+        for case, claim, tier in rows
     }
 
 

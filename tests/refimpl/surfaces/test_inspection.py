@@ -131,6 +131,8 @@ def test_what_the_map_does_not_tell_is_no_number(tmp_path: Path) -> None:
     assert set(found) == set(PARAMETERS)
     assert math.isnan(found["Str"])
     assert math.isnan(found["le_along"])
+    board = np.where(np.indices((8, 8)).sum(axis=0) % 2, np.nan, np.arange(64.0).reshape(8, 8))
+    assert all(map(math.isnan, mean_square_slopes(board, (1.0, 1.0))))  # no two neighbours
 
 
 def test_an_inspection_says_what_the_file_holds(tmp_path: Path) -> None:
