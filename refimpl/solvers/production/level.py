@@ -140,8 +140,7 @@ class LevelSolver:
         self._control = MixingControl(self.residual, has_lag=has_lag, needs_mixing=mixes)
         self.stagnated = False
         for _ in range(constants.UPDATE_LIMIT):
-            # the residual is that of the terms computed from the pressure before it was scaled to the load
-            if has_lag and self.residual <= goal:
+            if has_lag and self.residual <= goal and not self._terms_are_current(goal):
                 self.residual = self.lagged.update()
             if self.residual <= goal or self._contact_suffices():
                 return self.residual <= goal
@@ -156,6 +155,14 @@ class LevelSolver:
             self._control.record(self.residual, feedback)
         self.stagnated = self.residual > goal
         return not self.stagnated
+
+    def _terms_are_current(self, goal: float) -> bool:
+        """Whether the residual meets the goal for the pressure after its scaling to the load as well.
+
+        The lagged terms are those of the pressure before it. Where they feed back weakly, new ones change the
+        residual by less than the scaling.
+        """
+        return not self.needs_mixing and self.residual + self.lagged.scaling <= goal
 
     def _cg_goal(self, tolerance: float) -> float:
         """The residual to which CG reduces the fixed problem before the next update."""
