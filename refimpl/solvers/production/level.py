@@ -25,7 +25,7 @@ from refimpl.solvers.production.capped_cg import CappedCG
 from refimpl.solvers.production.coarse_grids import InitialGuess
 from refimpl.solvers.production.lagged_terms import LaggedTerms, pressure_compliance
 from refimpl.solvers.production.projected_cg import ProjectedCG
-from refimpl.solvers.tau_active_set import ActiveSet, ContactTest, iterate
+from refimpl.solvers.tau_active_set import ActiveSet, ContactTest, FixedSet, iterate
 
 
 def projected_cg(
@@ -187,10 +187,13 @@ class LevelSolver:
         return residual
 
     def _contact_suffices(self) -> bool:
-        """Whether no more than the contact set is asked of this state, and the set is certain."""
+        """Whether no more than the contact of the active set's elements is asked of this state, and is
+        certain."""
         if self._enough is None or not self._enough(self.cg.contact):
             return False
-        return self.cg.contact_is_certain(self._stiffness)
+        active = self.lagged.active
+        among = active.elements if isinstance(active, FixedSet) else None
+        return self.cg.contact_is_certain(self._stiffness, among)
 
     def _status(self) -> Status:
         if self.residual <= self._goal:
