@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from refimpl.errors import InputError
 from reports.result_files import read_result
-from verification.benchmarks import rounds
-from verification.benchmarks.__main__ import append, known, main
+from verification.benchmarks import overhead, rounds
+from verification.benchmarks.__main__ import append, main
 from verification.benchmarks.codes import ALONE, OWN, SHEARED, SLOPED, codes
 from verification.benchmarks.problems import problem
 from verification.benchmarks.rounds import Failed, Turns, error, in_turns, tuned, tuned_turns
@@ -31,7 +30,6 @@ def found(seconds: float, **more: Any) -> dict[str, Any]:
         "processor seconds": seconds / 2,
         "peak memory": 3e8,
         "memory before": 1e8,
-        "convolution seconds": 0.5,
         "converged": True,
         "operations": {},
         "residual": None,
@@ -212,7 +210,6 @@ def test_rows_count_convolutions_on_the_padded_box() -> None:
     one.rounds[-1]["operations"] = {"n log2 n": 640.0}
     entry: Any = row(one)
     assert entry["convolution equivalents"] == 640.0 / (16 * 4)
-    assert entry["times one convolution"]["median"] == 3.0
     assert entry["memory of the solve"]["median"] == 2e8
     assert entry["seconds again"] == {"median": 0.375, "least": 0.25, "most": 0.5}
     assert entry["meets the target"] is True
@@ -235,9 +232,15 @@ def test_lines_show_ratios_and_who_was_left_out() -> None:
 
 
 def test_names_are_checked() -> None:
-    assert known("--kinds", None, ["smooth", "rough"]) == ["smooth", "rough"]
-    with pytest.raises(InputError, match="--codes"):
-        known("--codes", "hertz", [OWN])
+    with pytest.raises(SystemExit, match="2"):
+        main(["--kinds", "hertz", "--json", "record.json"])
+
+
+def test_a_solve_and_its_solver_take_turns() -> None:
+    seconds, work = overhead.turns(SLOPED, "smooth", 32, 3)
+    assert np.shape(seconds) == (3, 2)
+    assert min(map(min, seconds)) > 0
+    assert work > overhead.turns(OWN, "smooth", 32, 1)[1] > 0
 
 
 def test_a_record_only_grows(tmp_path: Path) -> None:
