@@ -82,7 +82,6 @@ TIMES: dict[str, Column] = {
     "peak (MPa)": _measured(lambda row: f"{1e-6 * row['peak']:.3f}"),
     "peak memory (MB)": _measured(lambda row: round(1e-6 * row["peak memory"]["median"])),
     "convolutions in all": _measured(lambda row: row.get("convolution equivalents")),
-    "times one convolution": _measured(lambda row: row["times one convolution"]["median"]),
     "rounds, threads, load": lambda row: (
         f"{row['rounds']}, {row['threads']}, {row['load average']['before'][0]:.0f}"
     ),

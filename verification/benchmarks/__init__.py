@@ -2,5 +2,5 @@
 
 `problems` states the contacts, `codes` the solvers, `timed` one solve in a process of its own, `rounds` the
 search for tolerances and the turns, `summary` the table. ``python -m verification.benchmarks --grids
-128,256,512 --json FILE`` measures what is installed and appends a run to the record in FILE.
+128 256 512 --json FILE`` measures what is installed and appends a run to the record in FILE.
 """

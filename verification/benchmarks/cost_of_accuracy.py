@@ -31,7 +31,6 @@ SEEDS = (1, 2, 3)
 SETTLED = (rf.Status.CONVERGED, rf.Status.CYCLED)
 _SIDE, _LOAD, _PLANE_LOAD, _RMS = 1.61e-3, 70.0, 400.0, 0.5e-6  # m, N, N, m
 
-
 _GAUSSIAN = partial(rf.GaussianRoughness, rms=_RMS)
 _LAY = partial(_GAUSSIAN, correlation_length=(520e-6, 52e-6))  # m, along and across
 _SELF_AFFINE = partial(
@@ -128,8 +127,7 @@ def _cell(row: Mapping[str, Any]) -> str:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Solve all classes, write the document and print its table."""
-    name = "python -m verification.benchmarks.cost_of_accuracy"
-    parser = argparse.ArgumentParser(prog=name, description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--json", type=Path, required=True)
     options = parser.parse_args(arguments)
     progress = Progress(len(LOWER) * len(SEEDS))

@@ -7,10 +7,8 @@ import math
 import os
 import subprocess
 import sys
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 from verification.benchmarks.codes import OWN
@@ -44,22 +42,18 @@ class Turns:
 
     def solve(self, tolerance: float, threads: int, limit: float) -> Found:
         """Solve in a fresh process, within ``limit`` seconds. Raises `Failed` with the last line said."""
-        with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder) / "found.json"
-            asked = ["--code", self.code, "--kind", self.kind, "--grid", str(self.M)]
-            asked += ["--tolerance", repr(tolerance), "--json", str(file)]
-            command = [sys.executable, "-m", "verification.benchmarks.timed", *asked]
-            environment = {**os.environ, **dict.fromkeys(THREADS, str(threads))}
-            try:
-                done = subprocess.run(
-                    command, env=environment, capture_output=True, encoding="utf-8", timeout=limit
-                )
-            except subprocess.TimeoutExpired:
-                raise Failed(f"took longer than {limit:g} s") from None
-            if done.returncode != 0:
-                raise Failed((done.stderr.strip() or "no word").splitlines()[-1])
-            found: Found = json.loads(file.read_text(encoding="utf-8"))
-            return found
+        asked = [self.code, self.kind, str(self.M), repr(tolerance)]
+        command = [sys.executable, "-m", "verification.benchmarks.timed", *asked]
+        environment = {**os.environ, **dict.fromkeys(THREADS, str(threads))}
+        try:
+            done = subprocess.run(
+                command, env=environment, capture_output=True, encoding="utf-8", timeout=limit
+            )
+        except subprocess.TimeoutExpired:
+            raise Failed(f"took longer than {limit:g} s") from None
+        if done.returncode != 0:
+            raise Failed((done.stderr.strip() or "no word").splitlines()[-1])
+        return dict(json.loads(done.stdout.splitlines()[-1]))
 
 
 def error(found: Mapping[str, Any]) -> float:

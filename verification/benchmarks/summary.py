@@ -36,9 +36,6 @@ def row(turns: Turns) -> dict[str, object]:
         name: [found[name] for found in turns.rounds if found[name] is not None] for name in TIMED
     }
     series["memory of the solve"] = [found["peak memory"] - found["memory before"] for found in turns.rounds]
-    series["times one convolution"] = [
-        found["seconds"] / found["convolution seconds"] for found in turns.rounds
-    ]
     numbers: dict[str, object] = {name: spread(values) for name, values in series.items() if values}
     numbers["meets the target"] = all(error(found) <= TARGET for found in turns.rounds)
     logs = last["operations"].get("n log2 n")

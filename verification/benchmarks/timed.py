@@ -6,13 +6,11 @@ buffers of the problem's own size are. A second solve gives the warm-run time, w
 
 from __future__ import annotations
 
-import argparse
 import json
 import math
-import statistics
+import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import scipy.fft as sfft
@@ -22,25 +20,16 @@ from refimpl.operating_system import peak_memory
 from refimpl.operators.fft import FFTInfluence
 from verification.benchmarks.codes import Pressed, codes
 from verification.benchmarks.problems import problem
-from verification.framework.files import to_json, write_text
 from verification.solver_suite.protocol import ContactProblem
 
 _WARM_UP = (64, 1e-4)  # elements per side, tolerance
 _AGAIN = 20.0  # seconds up to which a solve is repeated
-_CONVOLUTIONS = 5  # timed, of which the median counts
 
 
 def main() -> None:
-    """Solve by the arguments and write the result."""
-    parser = argparse.ArgumentParser(prog="python -m verification.benchmarks.timed", description=__doc__)
-    parser.add_argument("--code", required=True)
-    parser.add_argument("--kind", required=True)
-    parser.add_argument("--grid", type=int, required=True)
-    parser.add_argument("--tolerance", type=float, required=True)
-    parser.add_argument("--json", type=Path, required=True)
-    options = parser.parse_args()
-    found = timed_solve(options.code, options.kind, options.grid, options.tolerance)
-    write_text(to_json(json.loads(json.dumps(found))), options.json)
+    """Solve by the arguments CODE KIND M TOLERANCE, and print the result as the last line."""
+    code, kind, M, tolerance = sys.argv[1:]
+    print("\n" + json.dumps(timed_solve(code, kind, int(M), float(tolerance))))
 
 
 def timed_solve(name: str, kind: str, M: int, tolerance: float) -> dict[str, object]:
@@ -50,7 +39,6 @@ def timed_solve(name: str, kind: str, M: int, tolerance: float) -> dict[str, obj
     press, before, processor = code.ready(kind, M, tolerance), peak_memory(), time.process_time()
     seconds, pressed = _seconds(press)
     processor, memory = time.process_time() - processor, peak_memory()
-    shape = padded_box(pressed.pressure)
     return {
         "seconds": seconds,
         "seconds again": _seconds(code.ready(kind, M, tolerance))[0] if seconds <= _AGAIN else None,
@@ -61,8 +49,7 @@ def timed_solve(name: str, kind: str, M: int, tolerance: float) -> dict[str, obj
         "operations": dict(pressed.operations),
         "residual": pressed.residual,
         **residuals_of(problem(kind, M, tolerance), pressed.pressure),
-        "padded box": list(shape),
-        "convolution seconds": _convolution_seconds(shape),
+        "padded box": list(padded_box(pressed.pressure)),
     }
 
 
@@ -104,17 +91,6 @@ def padded_box(pressure: Array) -> tuple[int, int]:
     """Return the shape of the FFT that convolves over the contact's bounding box."""
     rows, columns = (2 * n for n in Window.around(pressure > 0, margin=0).shape)
     return sfft.next_fast_len(rows), sfft.next_fast_len(columns, real=True)
-
-
-def _convolution_seconds(shape: tuple[int, int]) -> float:
-    """Seconds of one convolution by FFT on a shape."""
-    field, hat = np.random.default_rng(0).random(shape), np.ones((shape[0], shape[1] // 2 + 1))
-    seconds = []
-    for _ in range(_CONVOLUTIONS):
-        started = time.perf_counter()
-        sfft.irfft2(sfft.rfft2(field) * hat, s=shape)
-        seconds.append(time.perf_counter() - started)
-    return statistics.median(seconds)
 
 
 if __name__ == "__main__":

@@ -76,14 +76,14 @@ class CappedCG(ProjectedCG):
         relative, penetration = contact_residuals(gap, energy, approach, lowest, rounding, float(f.sum()))
         return max(relative, missed), penetration
 
-    def contact_is_certain(self, stiffness: float) -> bool:
+    def contact_is_certain(self, stiffness: float, among: Mask | None = None) -> bool:
         """Return what `ProjectedCG` returns where no pressure is at the cap or near it, else False.
 
         Load that elements at the cap do not bear may bring others into contact, however small the error of
         the separation on the free ones is.
         """
         below_cap = not self.capped.any() and bool(self._pressing.max(initial=0.0) < _FULL * self._cap)
-        return below_cap and super().contact_is_certain(stiffness)
+        return below_cap and super().contact_is_certain(stiffness, among)
 
     def iterate(self) -> None:
         """One step on the free elements, then the exchange of elements at both bounds."""

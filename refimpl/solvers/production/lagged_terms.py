@@ -62,6 +62,7 @@ class LaggedTerms:
     slopes : those that the last update found
     slopes_used : those that the displacements of the present state came from
     diverged : slopes or shear displacements ran out of range
+    scaling : relative change of the pressure to the load since the terms were computed; inf under a cap
     indentation : plastic indentation that the slopes contain (m), None without a cap
     """
 
@@ -70,6 +71,7 @@ class LaggedTerms:
         self.slopes = self.slopes_used = Slopes.flat(problem.gap.shape)
         self.active: ActiveSet = first_set(problem)
         self.diverged = False
+        self.scaling = math.inf
         self.indentation: Array | None = None
         self._posed = False
         self._weakly_coupled = couples_weakly(problem)
@@ -128,6 +130,7 @@ class LaggedTerms:
             self.slopes = slopes
         K = self.slopes.cosine_product
         target, load_error = self._target(K)
+        self.scaling = load_error if math.isinf(problem.cap) else math.inf
         self._requested = shear, K
         self._set_problem(shear, K, target)
         return math.inf if self.diverged else max(*self._cg.residuals(), load_error, change)

@@ -25,7 +25,7 @@ from refimpl.solvers.production.capped_cg import CappedCG
 from refimpl.solvers.production.coarse_grids import InitialGuess
 from refimpl.solvers.production.lagged_terms import LaggedTerms, pressure_compliance
 from refimpl.solvers.production.projected_cg import ProjectedCG
-from refimpl.solvers.tau_active_set import ActiveSet, ContactTest, iterate
+from refimpl.solvers.tau_active_set import ActiveSet, ContactTest, FixedSet, iterate
 
 
 def projected_cg(
@@ -140,8 +140,7 @@ class LevelSolver:
         self._control = MixingControl(self.residual, has_lag=has_lag, needs_mixing=mixes)
         self.stagnated = False
         for _ in range(constants.UPDATE_LIMIT):
-            # the residual is that of the terms computed from the pressure before it was scaled to the load
-            if has_lag and self.residual <= goal:
+            if has_lag and self.residual <= goal and not self._terms_are_current(goal):
                 self.residual = self.lagged.update()
             if self.residual <= goal or self._contact_suffices():
                 return self.residual <= goal
@@ -156,6 +155,14 @@ class LevelSolver:
             self._control.record(self.residual, feedback)
         self.stagnated = self.residual > goal
         return not self.stagnated
+
+    def _terms_are_current(self, goal: float) -> bool:
+        """Whether the residual meets the goal for the pressure after its scaling to the load as well.
+
+        The lagged terms are those of the pressure before it. Where they feed back weakly, new ones change the
+        residual by less than the scaling.
+        """
+        return not self.needs_mixing and self.residual + self.lagged.scaling <= goal
 
     def _cg_goal(self, tolerance: float) -> float:
         """The residual to which CG reduces the fixed problem before the next update."""
@@ -180,10 +187,13 @@ class LevelSolver:
         return residual
 
     def _contact_suffices(self) -> bool:
-        """Whether no more than the contact set is asked of this state, and the set is certain."""
+        """Whether no more than the contact of the active set's elements is asked of this state, and is
+        certain."""
         if self._enough is None or not self._enough(self.cg.contact):
             return False
-        return self.cg.contact_is_certain(self._stiffness)
+        active = self.lagged.active
+        among = active.elements if isinstance(active, FixedSet) else None
+        return self.cg.contact_is_certain(self._stiffness, among)
 
     def _status(self) -> Status:
         if self.residual <= self._goal:

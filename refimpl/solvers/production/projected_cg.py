@@ -116,16 +116,17 @@ class ProjectedCG:
         rounding = self._rounding * float(pressing.max(initial=0.0))
         return contact_residuals(gap, energy, approach, lowest, rounding, float(pressing.sum()))
 
-    def contact_is_certain(self, stiffness: float) -> bool:
-        """Return whether the remaining error of the separation can change no element's contact.
+    def contact_is_certain(self, stiffness: float, among: Mask | None = None) -> bool:
+        """Return whether the remaining error of the separation can change no element's contact, ``among``
+        these or all.
 
         ``stiffness`` is the pressure per displacement of a single element (Pa/m).
         """
         v, approach = self._separate().v, self.approach
         margin = CERTAINTY * float((np.abs(v - approach) * self.free).max())
-        pressing = np.count_nonzero(self._pressing > stiffness * margin)
-        close = np.count_nonzero(v <= approach + margin)
-        return bool(pressing == close == np.count_nonzero(self.free))
+        pressing = self._vectors.scatter_mask(self._pressing > stiffness * margin)
+        certain = np.where(self.free, pressing, v > approach + margin)
+        return bool((certain if among is None else certain[among]).all())
 
     def iterate(self) -> None:
         """One step of projected CG on the contact set, then the exchange of elements.

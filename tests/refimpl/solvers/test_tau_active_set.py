@@ -286,7 +286,7 @@ def test_solves_that_end_early_do_not_change_the_sequence(
     problem = problem_of(scene, 64)
     quick = level_solver(problem)
     short = quick.result(1e-8)
-    monkeypatch.setattr(ProjectedCG, "contact_is_certain", lambda cg, stiffness: False)
+    monkeypatch.setattr(ProjectedCG, "contact_is_certain", lambda cg, stiffness, among: False)
     thorough = level_solver(problem)
     long = thorough.result(1e-8)
     assert short.status is long.status

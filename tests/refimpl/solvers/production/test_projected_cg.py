@@ -150,6 +150,7 @@ def test_contact_is_certain_beyond_twice_the_misfit(
         np.array([[misfit - 1.0, clearance + 1.0, 1e9]]), np.ones((1, 3)), target=None, approach=1.0
     )
     assert cg.contact_is_certain(stiffness) is certain
+    assert cg.contact_is_certain(stiffness, np.array([[True, False, False]])) is (stiffness < 2 / 0.25)
 
 
 def winkler(
