@@ -49,7 +49,7 @@ def twins_sample() -> Measured:
             "The intervals cover the truth on each grid, under a drift, with a row off by eight deviations "
             "or by a factor of 1000; the warning stands in every twin whose tau is not determined.",
             "twins whose friction is known on 512 elements; coverage as in ASME V&V 20 (2009)",
-            0.86, "95 %, less two standard deviations of 26 twins (8.5 %) and rounding"),
+            0.86, "95 %, less two standard deviations of 23 twins (9.1 %)"),
         "identification/sharp-twins": (
             "sharp", "95 % intervals of tau below 5 %, without a warning",
             "Ten to twelve loads over two to three decades, noise 0.5 %, rough balls on "
