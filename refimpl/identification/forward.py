@@ -14,7 +14,7 @@ from refimpl.driver.solve import solve
 from refimpl.grid import Array
 from refimpl.scene.parameters import parameters, with_parameter
 from refimpl.scene.scene import Scene
-from refimpl.sensitivities.sensitivity import difference_quotients, friction_slopes, sensitivity
+from refimpl.sensitivities.sensitivity import difference_quotients, friction_slopes, grid_sensitivity
 from refimpl.solution.solution import Solution
 
 COVERAGE = 1.959963984540054  # half-width of 95 % over the standard uncertainty, normal distribution
@@ -133,7 +133,6 @@ def _response(
     inputs, solves = _inputs(scene, solution, tolerances)
     by_tau, by_beta = friction_slopes(scene, solution)
     excess = solution.features.excess
-    by_tau -= excess / scene.load
     slopes = (by_tau, by_beta, *(_log_slope(scene, solution, name) for name in further))
     parts = dict(solution.uncertainty["friction_coefficient_corrected"])
     edge = parts.pop("active set", 0.0)
@@ -159,9 +158,9 @@ def _response(
 
 
 def _log_slope(scene: Scene, solution: Solution, name: str) -> float:
-    """``d mu / d ln p`` by two solves: areas, and with them friction, are counted (`sensitivity`)."""
+    """``d mu / d ln p`` by two solves: areas, and with them friction, are counted (`grid_sensitivity`)."""
     value = parameters(scene)[name]
-    return value * difference_quotients(scene, solution, name, value)[0]["friction_coefficient"]
+    return value * difference_quotients(scene, solution, name, value)[0]["friction_coefficient_corrected"]
 
 
 def _inputs(
@@ -170,8 +169,8 @@ def _inputs(
     """Changes of mu at the tolerances (95 %), and the solves that they take."""
     if not tolerances:
         return {}, 0
-    found = sensitivity(scene, solution, tuple(tolerances))
-    derivatives = found.derivatives["friction_coefficient"]
+    found = grid_sensitivity(scene, solution, tuple(tolerances))
+    derivatives = found.derivatives["friction_coefficient_corrected"]
     differenced = sum(name == "load" or ".surface" in name for name in found.parameters)
     if solution.plastic_area > 0:
         differenced = len(found.parameters)

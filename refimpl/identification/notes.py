@@ -104,6 +104,10 @@ def _model(result: Identification) -> Iterator[str]:
     bars = np.array([math.hypot(r.numerical, r.contact_edge) / COVERAGE for r in responses])
     if (wide := int(np.sum(bars > measured))) > 0:
         yield f"error bars of the model exceed the data's uncertainty in {wide} rows: take a finer grid"
+    blind = [k for k, response in enumerate(responses) if response.numerical > response.mu > 0]
+    if 0 < len(blind) < len(responses):
+        named = ", ".join(f"{k + 1} ({result.rows[k].load:.4g} N)" for k in blind)
+        yield f"the model's error bar exceeds mu in row {named}, without weight: check the units, or refine"
     if (most := max(response.plastic for response in responses)) > 0:
         yield f"up to {100 * most:.0f} % of the contact is at the hardness: A/P changes little there"
 

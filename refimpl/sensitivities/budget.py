@@ -79,7 +79,7 @@ def budget(
     tolerances: Mapping[str, float] | None = None,
     sampling: Mapping[str, float] | None = None,
 ) -> Budgets:
-    """Budgets of mu, A, f_max and Q.
+    """Budgets of mu and A (the corrected ones), f_max and Q.
 
     Parameters
     ----------
@@ -152,7 +152,8 @@ def _half_space(
         error = half_space_error(scene, solution)
     except ArithmeticError:
         return dict.fromkeys(NUMBERS, math.inf)
-    return {number: max(0.0, error.stated(number) - sources[number]["coefficients"]) for number in NUMBERS}
+    stated = {number: error.stated(number.removesuffix("_corrected")) for number in NUMBERS}
+    return {number: max(0.0, stated[number] - sources[number]["coefficients"]) for number in NUMBERS}
 
 
 def _plasticity(scene: Scene, solution: Solution) -> dict[str, float]:
@@ -182,6 +183,8 @@ def _cosines(solution: Solution, derivatives: Sensitivity) -> dict[str, float]:
     )
     misjudged = exact.normal - solution.normal_force
     change = {number: abs(derivatives.derivatives[number]["load"] * misjudged) for number in NUMBERS}
-    change["friction_coefficient"] = abs(exact.friction / exact.normal - solution.friction_coefficient)
+    change["friction_coefficient_corrected"] = abs(
+        exact.friction / exact.normal - solution.friction_coefficient
+    )
     change["binormal_force"] = abs(exact.binormal - solution.binormal_force)
     return change

@@ -1,9 +1,9 @@
 """Derivatives of a solution's numbers by the scene's numbers.
 
-Pressures answer smoothly while the contact set stays as it is, so that friction, binormal force and peak
-pressure follow from one linear solve a parameter (`refimpl.sensitivities.fixed_contact`). The area does not:
-at a fixed set it is constant, and on a grid it is a count. It is found in two ways, and ``tau dA`` is added
-to friction.
+Friction and area are the corrected ones, without the mean excess of counted edges. Pressures answer smoothly
+while the contact set stays as it is, so that friction, binormal force and peak pressure follow from one
+linear solve a parameter (`refimpl.sensitivities.fixed_contact`). The area does not: at a fixed set it is
+constant, and on a grid it is a count. It is found in two ways, and ``tau dA`` is added to friction.
 
 - Load, moduli and friction leave the surfaces alone, and the edges of the contact move by what the
   linear answer grows like there (`refimpl.sensitivities.edge_motion`), up to one factor. That is taken from
@@ -12,9 +12,14 @@ to friction.
   over two full solves for each. So it is for all parameters where pressures reach the hardness: there the
   edge has no such growth.
 
-The scatter stated beside the area (and through tau beside friction) is that of counting elements in
-two solves, and of comparing the edge with 5 x 5 or with 9 x 9 elements. Beside every number's answer to the
-load, a shape or a roughness stands how far the fixed set's answer is from that of the two solves.
+The step of these solves is where the scatter of counted elements and the third derivative cost as much:
+``h^3 = sigma / (2 sqrt(2) C)`` for a relative scatter sigma and a cubic term ``C h^3``.
+
+The scatter stated beside a derivative (that of the area through tau beside friction) has in squares:
+elements counted in two solves, the cubic term, the comparison of the edge with 5 x 5 or with 9 x 9 elements,
+for the load and for surfaces the difference of the fixed set's answer and that of the two solves, the
+difference to the same derivative on half the elements along each side, and the number's own error bar, as if
+its error changed by as much while the parameter changes by a factor of e.
 """
 
 from __future__ import annotations
@@ -22,7 +27,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import numpy as np
@@ -40,9 +45,11 @@ from refimpl.sensitivities.edge_motion import EdgeMotion
 from refimpl.sensitivities.fixed_contact import FixedContact
 from refimpl.solution.solution import Solution
 
-NUMBERS = ("friction_coefficient", "contact_area", "max_pressure", "binormal_force")
+NUMBERS = ("friction_coefficient_corrected", "contact_area_corrected", "max_pressure", "binormal_force")
+_MEAN_AREA = "area without the mean excess"  # friction takes its share by tau of this one
 _STEP = 1e-4  # relative, of parameters: smooth at a fixed set, so the quotient errs by 1e-8
-_STRIDE = 0.1  # relative, of parameters in full solves: moves an edge by several per cent of a radius
+_STRIDES = 0.01, 0.1  # relative steps of parameters in full solves, least and most
+_CUBIC, _MOST_CUBIC = 2.0, 4.0  # C of areas over the logarithm of a parameter: typical, 95 % (5 fits on 512)
 _SHIFT = 0.1  # correlation lengths by which a change of the length may move the surface at the far border
 _TIED = 1e-6  # share of p_max within which pressures tie: symmetric scenes, apart from slopes
 _SOLVED = 1e-3  # relative residual of a linear solve, at most: the digits of a derivative
@@ -53,10 +60,10 @@ _Found = TypeVar("_Found")
 class Sensitivity:
     """Derivatives of a solution's numbers with respect to the scene's parameters, SI.
 
-    ``derivatives[number][parameter]``, and ``scatter`` of the same shape: the 95 % bound of what
-    counting elements leaves uncertain (0 for what is smooth), and how far apart two ways to a derivative are.
-    All are of the solution's grid: what that does not resolve, no scatter knows. ``found`` and ``parameters``
-    are the numbers and parameters themselves. ``residual`` is the worst of the linear solves.
+    ``derivatives[number][parameter]``, and ``scatter`` of the same shape: a 95 % half-width, infinite where
+    half the grid has no such derivative. ``found`` and ``parameters`` are the numbers and parameters
+    themselves. ``residual`` is the worst of the linear solves. ``edge_growth`` is the part of mu's
+    derivatives by tau on the area that the contact gains.
     """
 
     found: Mapping[str, float]
@@ -64,6 +71,7 @@ class Sensitivity:
     derivatives: Mapping[str, Mapping[str, float]]
     scatter: Mapping[str, Mapping[str, float]]
     residual: float
+    edge_growth: Mapping[str, float] = field(default_factory=dict)
 
     def relative(self, number: str, parameter: str) -> float:
         """``(p / q) dq/dp``: the per cents that q changes by for one per cent of p.
@@ -81,40 +89,77 @@ class Sensitivity:
 def sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = None) -> Sensitivity:
     """Derivatives of mu, A, f_max and Q by every parameter of `differentiable_parameters(scene)`.
 
-    ``solution`` is the scene's own, under its load. Costs one GMRES solve a parameter, and two
-    solves on the solution's grid for the load and for each number of a surface. ``names`` restricts the
-    parameters to these and the load. Raises `InputError`
-    for a solution that is not in contact, not certified or another scene's, `ArithmeticError` where a
-    linear or full solve does not converge.
+    ``solution`` is the scene's own, under its load. Costs one GMRES solve a parameter, two solves on the
+    solution's grid for the load and for each number of a surface, and as much on half the elements a side.
+    ``names`` restricts the parameters to these and the load. Raises `InputError` for a solution that is not
+    in contact, not certified or another scene's, `ArithmeticError` where a linear or full solve does not
+    converge.
     """
     _check(scene, solution)
+    found, coarse = grid_sensitivity(scene, solution, names), None
+    half = [max(1, n // 2) for n in solution.grid.shape]
+    with suppress(InputError, ArithmeticError):
+        again = solved_again(scene, solution, plastic=solution.problem.terms.plastic, grid=(half[0], half[1]))
+        _check(scene, again)
+        coarse = grid_sensitivity(scene, again, names)
+
+    def scatter(number: str, name: str) -> float:
+        if coarse is None:
+            return math.inf
+        change = found.derivatives[number][name] - coarse.derivatives[number][name]
+        moved = solution.error(number) / found.parameters[name]
+        return math.hypot(found.scatter[number][name], change, moved)
+
+    return replace(
+        found,
+        scatter={number: {name: scatter(number, name) for name in found.parameters} for number in NUMBERS},
+    )
+
+
+def grid_sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = None) -> Sensitivity:
+    """Return the derivatives of one grid: their scatter lacks the difference to another one.
+
+    Raises as `sensitivity` does for solves that do not converge.
+    """
     base = solution.problem.with_terms(_terms(solution))
     active = solution.contact & ~solution.excluded
     fixed = FixedContact(base, solution.pressure, active, solution.slopes)
     values, yields = differentiable_parameters(scene), bool(fixed.capped.any())
     if names is not None:
         values = {name: value for name, value in values.items() if name in ("load", *names)}
-    answers = {name: _answer(scene, base, fixed, name, value) for name, value in values.items()}
+    excess = solution.features.excess
+    answers = {name: _answer(scene, base, fixed, name, value, excess) for name, value in values.items()}
     quotients = {
         name: difference_quotients(scene, solution, name, value)
         for name, value in values.items()
         if name == "load" or ".surface" in name or yields
     }
     solved = {name: derivatives for name, (derivatives, _) in quotients.items()}
-    # 95 % bound of what counting elements in two solves leaves uncertain, as in the error bars of one grid
-    counting = 2 * math.sqrt(2) * AREA.scatter * area_scatter(solution.features)
-    counted = {
-        name: (derivatives["contact_area"], counting / span)
-        for name, (derivatives, span) in quotients.items()
-    }
-    edge = EdgeMotion(fixed, counted["load"], answers["load"].pressure)
-    areas = {
-        name: counted[name]
-        if name in counted and (yields or name != "load")
-        else edge.derivative(answers[name].pressure)
-        for name in values
-    }
-    return _gathered(scene, solution, answers, areas, solved)
+    loose = {name: _loose(solution, values[name], span) for name, (_, span) in quotients.items()}
+
+    def areas(area: str) -> dict[str, tuple[float, float]]:
+        """Derivatives of an area, with their scatter."""
+        counted = {name: (derivatives[area], loose[name]) for name, derivatives in solved.items()}
+        edge = EdgeMotion(fixed, counted["load"], answers["load"].pressure)
+        return {
+            name: counted[name]
+            if name in counted and (yields or name != "load")
+            else edge.derivative(answers[name].pressure)
+            for name in values
+        }
+
+    return _gathered(scene, solution, answers, areas(NUMBERS[1]), areas(_MEAN_AREA), solved)
+
+
+def _count_scatter(solution: Solution) -> float:
+    """Standard deviation of a counted area (m^2)."""
+    return AREA.scatter * area_scatter(solution.features)
+
+
+def _loose(solution: Solution, value: float, span: float) -> float:
+    """95 % bound of an area's derivative by two solves: elements counted in both, and the cubic term."""
+    cubic = _MOST_CUBIC * (0.5 * span / value) ** 2 * solution.contact_area / abs(value)
+    return math.hypot(2 * math.sqrt(2) * _count_scatter(solution) / span, cubic)
 
 
 def _check(scene: Scene, solution: Solution) -> None:
@@ -167,7 +212,10 @@ class _Answer:
     residual: float
 
 
-def _answer(scene: Scene, base: Problem, fixed: FixedContact, name: str, value: float) -> _Answer:
+def _answer(
+    scene: Scene, base: Problem, fixed: FixedContact, name: str, value: float, excess: float
+) -> _Answer:
+    """Answer to a parameter; its friction is without tau on the mean ``excess`` of the edge (m^2)."""
     (low, below), (high, above) = _both_sides(
         name,
         value,
@@ -195,7 +243,8 @@ def _answer(scene: Scene, base: Problem, fixed: FixedContact, name: str, value: 
         pressure=pressure,
         peak=0.5 * float(tied.max() + tied.min()),
         torn=0.5 * float(np.ptp(tied)),
-        friction=(after.friction - before.friction) / span,
+        friction=(after.friction - before.friction - (above.friction.jump - below.friction.jump) * excess)
+        / span,
         binormal=(after.binormal - before.binormal) / span,
         residual=found.residual,
     )
@@ -233,10 +282,10 @@ def difference_quotients(
 ) -> tuple[dict[str, float], float]:
     """Return each number's derivative over a parameter by two solves, and how far apart their values are.
 
-    A tenth of the value to either side, or to one where the other is not allowed. Raises `ArithmeticError`
+    The solves are a step to either side, or to one where the other is not allowed. Raises `ArithmeticError`
     where one of both solves does not converge, `InputError` where neither side is allowed.
     """
-    step, plastic = _stride(scene, name, value), solution.problem.terms.plastic
+    step, plastic = _stride(scene, solution, name, value), solution.problem.terms.plastic
     (low, below), (high, above) = _both_sides(
         name, value, step, lambda at: solved_again(with_parameter(scene, name, at), solution, plastic=plastic)
     )
@@ -244,18 +293,29 @@ def difference_quotients(
         if not ended.converged:
             raise ArithmeticError(f"a solve with {name} changed by {step:.2g} ended as {ended.status.value}")
     span = high - low
-    return {number: (getattr(above, number) - getattr(below, number)) / span for number in NUMBERS}, span
+    ends = _numbers(above), _numbers(below)
+    return {number: (ends[0][number] - ends[1][number]) / span for number in ends[0]}, span
+
+
+def _numbers(solution: Solution) -> dict[str, float]:
+    found = {number: float(getattr(solution, number)) for number in NUMBERS}
+    return found | {_MEAN_AREA: solution.contact_area - solution.features.excess}
 
 
 def solved_again(
-    scene: Scene, solution: Solution, *, plastic: bool | None, approach: float | None = None
+    scene: Scene,
+    solution: Solution,
+    *,
+    plastic: bool | None,
+    approach: float | None = None,
+    grid: tuple[int, int] | None = None,
 ) -> Solution:
-    """Solve a scene on a solution's grid, with its terms and its tolerance."""
+    """Solve a scene on a solution's grid, or on another one, with its terms and its tolerance."""
     terms = solution.problem.terms
     corrected = terms.slope_correction and not plastic
     return solve(
         scene,
-        solution.grid.shape,
+        grid or solution.grid.shape,
         approach=approach,
         oblique=terms.oblique,
         slope_correction=corrected,
@@ -266,19 +326,24 @@ def solved_again(
     )
 
 
-def _stride(scene: Scene, name: str, value: float) -> float:
-    """The relative step of full solves. Numbers that deform a surface about its corner move it farthest at
-    the other border: by no more than a share of its finest length."""
+def _stride(scene: Scene, solution: Solution, name: str, value: float) -> float:
+    """The relative step of full solves (see above).
+
+    Numbers that deform a surface about its corner move it farthest at the other border: by no more than a
+    share of its finest length.
+    """
+    sigma = _count_scatter(solution) / solution.contact_area
+    stride = float(np.clip((sigma / (2 * math.sqrt(2) * _CUBIC)) ** (1 / 3), *_STRIDES))
     head, _, key = name.rpartition(".")
     if key.startswith("correlation_length"):
-        return min(_STRIDE, _SHIFT * value / max(scene.lengths))
+        return min(stride, _SHIFT * value / max(scene.lengths))
     if key in ("lay", "anisotropy"):
         which, _, place = head.partition(".")
         part = getattr(scene, which).surface.parts[int(place[len("surface[") : -1])]
         finest: float = part.detail(max(scene.lengths)).length
         turn = abs(value) if key == "lay" else 1.0
-        return min(_STRIDE, _SHIFT * finest / max(scene.lengths) / turn)
-    return _STRIDE
+        return min(stride, _SHIFT * finest / max(scene.lengths) / turn)
+    return stride
 
 
 def _gathered(
@@ -286,18 +351,19 @@ def _gathered(
     solution: Solution,
     answers: Mapping[str, _Answer],
     areas: Mapping[str, tuple[float, float]],
+    mean_areas: Mapping[str, tuple[float, float]],
     solved: Mapping[str, Mapping[str, float]],
 ) -> Sensitivity:
     load, dmu_dA = scene.load, friction_per_area(scene.friction, scene.load)
     derivatives: dict[str, dict[str, float]] = {number: {} for number in NUMBERS}
     scatter: dict[str, dict[str, float]] = {number: {} for number in NUMBERS}
     for name, answer in answers.items():
-        area, loose = areas[name]
-        friction = answer.friction / load + dmu_dA * area
+        (area, loose), (mean_area, mean_loose) = areas[name], mean_areas[name]
+        friction = answer.friction / load + dmu_dA * mean_area
         if name == "load":
-            friction -= solution.friction_coefficient / load
+            friction -= solution.friction_coefficient_corrected / load
         found = (friction, area, answer.peak, answer.binormal)
-        spreads = dmu_dA * loose, loose, answer.torn, 0.0
+        spreads = dmu_dA * mean_loose, loose, answer.torn, 0.0
         for number, derivative, spread in zip(NUMBERS, found, spreads, strict=True):
             # the fixed set has no contact at new places; where two solves exist, their difference is included
             apart = abs(derivative - solved[name][number]) if name in solved else 0.0
@@ -308,26 +374,28 @@ def _gathered(
         derivatives=derivatives,
         scatter=scatter,
         residual=max(answer.residual for answer in answers.values()),
+        edge_growth={name: dmu_dA * area for name, (area, _) in mean_areas.items()},
     )
 
 
 def friction_slopes(scene: Scene, solution: Solution) -> tuple[float, float]:
-    """Return ``d mu / d tau`` (1/Pa) and ``d mu / d beta`` at the solution's contact set.
+    """Return ``d mu / d tau`` (1/Pa) and ``d mu / d beta`` of the corrected mu at the solution's contact set.
 
     Two GMRES solves and no solve of the scene. The motion of the contact's edge is neglected: `sensitivity`
     includes it. Where all contact is at the hardness, pressures are fixed and the slopes are sums.
     Both parameters must be positive. Raises as `sensitivity` does.
     """
     base = solution.problem.with_terms(_terms(solution))
-    active = solution.contact & ~solution.excluded
+    active, excess = solution.contact & ~solution.excluded, solution.features.excess
     if solution.contact.any() and solution.plastic_area == solution.contact_area:
         along = solution.slopes.cos_x * solution.slopes.cos_y * solution.grid.element_area / scene.load
-        return float(np.sum(active * along)), float(np.sum(solution.pressure * along))
+        mean_area = float(np.sum(active * along)) - excess / scene.load
+        return mean_area, float(np.sum(solution.pressure * along))
     _check(scene, solution)
     fixed = FixedContact(base, solution.pressure, active, solution.slopes)
     found = parameters(scene)
     adhesive, pressed = (
-        _answer(scene, base, fixed, name, found[name]).friction / scene.load
+        _answer(scene, base, fixed, name, found[name], excess).friction / scene.load
         for name in ("friction.tau", "friction.beta")
     )
     return adhesive, pressed

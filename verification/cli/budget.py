@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
 # number of a budget, its name in the table
 NAMES = {
-    "friction_coefficient": "mu",
-    "contact_area": "A",
+    "friction_coefficient_corrected": "mu",
+    "contact_area_corrected": "A",
     "max_pressure": "f_max",
     "binormal_force": "Q",
 }
@@ -51,7 +51,8 @@ def table(budgets: Budgets) -> str:
         for name in budgets.derivatives.parameters
     ]
     return (
-        f"uncertainty budget (95 %, in per cent of each number):\n{columns([header, *rows])}\n\n"
+        "uncertainty budget of mu and A (both corrected), f_max and Q (95 %, in per cent of each):\n"
+        f"{columns([header, *rows])}\n\n"
         f"change in per cent for one per cent of a parameter:\n{columns([header, *changes])}"
     )
 
@@ -77,7 +78,7 @@ def _share(part: Budget, width: float | None) -> str:
 
 
 def _relative(budgets: Budgets, number: str, name: str) -> str:
-    """With its scatter where that is a tenth of it or more."""
+    """With its 95 % half-width where that is a tenth of it or more."""
     found, answers = budgets.derivatives.found[number], budgets.derivatives
     if found == 0:
         return "-"

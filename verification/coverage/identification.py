@@ -53,7 +53,7 @@ class TableSet:
 
 
 SETS: Mapping[str, TableSet] = {
-    "drawn": TableSet(range(9600, 9780), drawn_table),
+    "drawn": TableSet(range(9600, 9756), drawn_table),
     "sharp": TableSet(range(6000, 6060), sharp_table),
     "hardness": TableSet(range(7000, 7040), yielding_table, ("hardness",)),
     "roughness": TableSet(

@@ -185,9 +185,9 @@ def test_bounds_of_capped_states_hold(tolerance: float, by: str) -> None:
 def test_model_form_of_an_elastic_solution_beyond_the_hardness() -> None:
     """The budget holds the difference to the capped one; below the hardness, or with the cap, none."""
     elastic, capped = rf.solve(ROUGH, 32, plastic=False), rf.solve(ROUGH, 32)
-    found = budget(ROUGH, elastic).numbers["friction_coefficient"]
+    found = budget(ROUGH, elastic).numbers["friction_coefficient_corrected"]
     assert found.sources["plasticity"] == pytest.approx(
-        capped.friction_coefficient - elastic.friction_coefficient, rel=1e-6
+        capped.friction_coefficient_corrected - elastic.friction_coefficient_corrected, rel=1e-6
     )
     assert found.total >= found.sources["plasticity"]
     below = hard(1e12)
@@ -208,7 +208,7 @@ def test_sensitivities_of_a_capped_solution() -> None:
             rf.solve(with_parameter(scene, name, value * (1 + sign * step)), 32, tolerance=1e-13)
             for sign in (-1, 1)
         )
-        for number in ("friction_coefficient", "binormal_force"):
+        for number in ("friction_coefficient_corrected", "binormal_force"):
             difference = (getattr(high, number) - getattr(low, number)) / (2 * step * value)
             assert d.derivatives[number][name] == pytest.approx(difference, rel=2e-3), (name, number)
 

@@ -81,7 +81,9 @@ def test_slopes_are_those_of_finite_differences(smooth: rf.Scene) -> None:
     ):
         value = {"friction.tau": 15e6, "friction.beta": 0.08}[name]
         ends = [
-            rf.solve(with_parameter(scene, name, value + s * step), M, tolerance=1e-11).friction_coefficient
+            rf.solve(
+                with_parameter(scene, name, value + s * step), M, tolerance=1e-11
+            ).friction_coefficient_corrected
             for s in (-1, 1)
         ]
         assert slope == pytest.approx((ends[1] - ends[0]) / (2 * step), rel=1e-3)
@@ -319,6 +321,15 @@ def test_a_wrong_row_is_named_and_dropped_and_two_wrong_rows_are_named(smooth: r
 def test_loads_in_another_unit_do_not_belong_to_the_scene(smooth: rf.Scene, factor: float, said: str) -> None:
     rows = [replace(row, load=factor * row.load) for row in _rows(smooth, 0.01, (20.0, 40.0, 80.0))]
     assert said in identify(_blind(smooth), rows, M, design=False).warnings[0]
+
+
+def test_a_load_that_the_grid_does_not_resolve_is_named(smooth: rf.Scene) -> None:
+    """40 N given as 0.04: a contact of few elements has no weight."""
+    rows = _rows(smooth, 0.01)
+    rows[3] = replace(rows[3], load=1e-3 * rows[3].load)
+    found = identify(_blind(smooth), rows, M, design=False)
+    assert any("exceeds mu in row 4 (0.04 N)" in text for text in found.warnings)
+    assert found.values["tau"].low < 15e6 < found.values["tau"].high
 
 
 SPAN = np.geomspace(1.0, 200.0, 9)  # N

@@ -126,7 +126,7 @@ def test_a_scene_with_tolerances_gets_a_budget() -> None:
         assert word in printed
     assert max(map(len, printed.splitlines())) <= 100
     stated = json.loads(Path("found.json").read_text())["budget"]
-    mu = stated["numbers"]["friction_coefficient"]
+    mu = stated["numbers"]["friction_coefficient_corrected"]
     assert mu["inputs"]["friction.tau"] == pytest.approx(mu["input"])
     assert mu["total"] == pytest.approx(mu["model_form"] + math.hypot(mu["numerical"], mu["input"]))
     assert set(stated["derivatives"]) == set(NUMBERS)
@@ -190,10 +190,15 @@ def test_a_result_that_can_have_no_budget_says_why(options: str, status: int, wh
 
 def made_up() -> Budgets:
     """mu = 0.5 and Q = -0.25, with derivatives 0.2 and -0.1 by a load of 2, and 0 by tau."""
-    found = {"friction_coefficient": 0.5, "contact_area": 4e-6, "max_pressure": 2e8, "binormal_force": -0.25}
+    found = {
+        "friction_coefficient_corrected": 0.5,
+        "contact_area_corrected": 4e-6,
+        "max_pressure": 2e8,
+        "binormal_force": -0.25,
+    }
     slopes = {
-        "friction_coefficient": {"load": 0.2, "friction.tau": 0.0},
-        "contact_area": {"load": 1e-6, "friction.tau": 2e-13},
+        "friction_coefficient_corrected": {"load": 0.2, "friction.tau": 0.0},
+        "contact_area_corrected": {"load": 1e-6, "friction.tau": 2e-13},
         "max_pressure": {"load": -5e7, "friction.tau": 10.0},
         "binormal_force": {"load": -0.1, "friction.tau": 5e-8},
     }
@@ -205,7 +210,7 @@ def made_up() -> Budgets:
             numerical=0.03 * abs(value),
             inputs={"load": 0.04 * abs(value)},
             sources={"coefficients": 0.02 * abs(value), "cosines": 0.01 * abs(value)},
-            sampling=0.12 * abs(value) if number == "contact_area" else None,
+            sampling=0.12 * abs(value) if number == "contact_area_corrected" else None,
         )
         for number, value in found.items()
     }
@@ -230,7 +235,7 @@ def test_a_budget_in_per_cent() -> None:
 def test_a_budget_as_json() -> None:
     found: dict[str, Any] = json.loads(json.dumps(budget.document(made_up())))
     assert found["tolerances"] == {"load": 0.1}
-    area = found["numbers"]["contact_area"]
+    area = found["numbers"]["contact_area_corrected"]
     assert area["inputs"] == pytest.approx({"load": 1.6e-7})
     assert area["model_form_sources"] == pytest.approx({"coefficients": 8e-8, "cosines": 4e-8})
     parts = [area[name] for name in ("value", "numerical", "input", "sampling", "model_form", "total")]
@@ -241,4 +246,4 @@ def test_a_budget_as_json() -> None:
 
 def test_an_unbounded_part_is_named() -> None:
     mu = Budget(0.1, 0.001, {"load": 0.0}, {"coefficients": math.inf})
-    assert "unbounded" in budget.table(replace(made_up(), numbers={"friction_coefficient": mu}))
+    assert "unbounded" in budget.table(replace(made_up(), numbers={"friction_coefficient_corrected": mu}))
