@@ -96,9 +96,9 @@ def test_without_any_extra_it_solves_plots_and_writes_csv(tmp_path: Path) -> Non
         "solve hertz --grid 16 --plot s.png --patches s.csv --npz s.npz --vtk s.vtu --json s.json",
         "sweep study.toml --workers 1 --csv t.csv --plot t.pdf",
     ):
-        command = [sys.executable, "-c", "from verification.cli import main; raise SystemExit(main())"]
+        command = [sys.executable, "-c", "from verification.start import run; raise SystemExit(run())"]
         done = subprocess.run(
-            [*command, *words.split()], cwd=tmp_path, env={**os.environ, "PYTHONPATH": paths},
+            [*command, *words.split()], cwd=tmp_path, env={**os.environ, "PYTHONPATH": paths, "MPLBACKEND": "none such"},
             capture_output=True, text=True, check=False,
         )  # fmt: skip
         assert done.returncode == 0, done.stderr
