@@ -98,8 +98,8 @@ def test_without_any_extra_it_solves_plots_and_writes_csv(tmp_path: Path) -> Non
     ):
         command = [sys.executable, "-c", "from verification.start import run; raise SystemExit(run())"]
         done = subprocess.run(
-            [*command, *words.split()], cwd=tmp_path, env={**os.environ, "PYTHONPATH": paths, "MPLBACKEND": "none such"},
-            capture_output=True, text=True, check=False,
+            [*command, *words.split()], cwd=tmp_path, capture_output=True, text=True, check=False,
+            env={**os.environ, "PYTHONPATH": paths, "MPLBACKEND": "none such"},
         )  # fmt: skip
         assert done.returncode == 0, done.stderr
     written = {path.name for path in tmp_path.iterdir() if path.stat().st_size > 100}
