@@ -7,7 +7,7 @@ OUT := out
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: report results test lint setup clean nightly mutation
+.PHONY: report results test lint setup clean nightly mutation site
 
 report: $(READY)
 	@mkdir -p $(OUT)
@@ -51,6 +51,15 @@ mutation: $(READY)
 		python tests/mutation_sample.py ../mutation.sqlite $(N) $(SEED) && \
 		cosmic-ray exec tests/mutation.toml ../mutation.sqlite && \
 		cr-report --surviving-only --show-diff ../mutation.sqlite
+
+# Pages with search, keys, options, functions, notebooks and the report of the committed results; a warning is an error.
+site: $(READY)
+	$(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt -e ".[docs]"
+	rm -rf $(OUT)/pages
+	$(BIN)/python -m nbconvert --execute --to markdown --output-dir $(OUT)/pages/docs/notebooks docs/notebooks/*.ipynb
+	$(BIN)/rough-friction report --results reports/results/quick.json.gz --output $(OUT)/pages
+	$(BIN)/python .ci/pages.py
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build
 
 setup: $(READY)
 

@@ -33,7 +33,7 @@ def real(value: object) -> float:
     >>> real(3), real("3"), real(True), real(None)
     (3.0, nan, nan, nan)
     """
-    if not isinstance(value, numbers.Real) or isinstance(value, bool):
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
         return math.nan
     number: Any = value
     try:

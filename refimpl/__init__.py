@@ -13,7 +13,7 @@ from refimpl.driver.solve import solve
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.measured import Inspection, MeasuredSurface, inspect
-from refimpl.model.friction import Friction
+from refimpl.model.friction import Friction, FrictionLaw
 from refimpl.model.materials import Material
 from refimpl.model.state import Status
 from refimpl.scene.scene import Body, Scene
@@ -36,6 +36,7 @@ __all__ = [
     "Body",
     "Flat",
     "Friction",
+    "FrictionLaw",
     "GaussianRoughness",
     "Grid",
     "InputError",

@@ -89,7 +89,7 @@ def require_number(
 
     >>> require_number("nu", 0.3, "a ratio", above=-1, at_most=0.5)
     """
-    if isinstance(value, numbers.Real) and not isinstance(value, bool):
+    if not isinstance(value, bool) and isinstance(value, numbers.Real):
         number = as_double(value)
         if (
             math.isfinite(number)
@@ -100,6 +100,11 @@ def require_number(
         ):
             return
     raise InputError(field, value, allowed)
+
+
+def is_whole(value: object) -> bool:
+    """Return whether this is a whole number, Python's or NumPy's, and no truth value."""
+    return not isinstance(value, bool) and isinstance(value, numbers.Integral)
 
 
 def keep_doubles(parameters: object, *names: str) -> None:

@@ -34,6 +34,14 @@ REPRODUCED = ("reproduction", "errata")
 
 CHAPTERS = (
     Chapter(
+        "validation",
+        "Validation",
+        "Predictions beside published measurements. What was searched, found, and not usable: "
+        "docs/experiments.md.",
+        ("validation",),
+        ("experiments",),
+    ),
+    Chapter(
         "code",
         "Code and solution verification",
         "Each part of the code is compared with an answer that shares no code with it: kernels with 50-digit "
@@ -91,7 +99,7 @@ CHAPTERS = (
         "Appendix III: costs",
         "Seconds beside published codes at one recomputed error, and the cost of an accuracy.",
         ("benchmarks",),
-        ("benchmarks", "accuracy_costs", "large_grids", "sweeps"),
+        ("benchmarks", "accuracy_costs"),
     ),
 )  # fmt: skip
 

@@ -11,6 +11,7 @@ from reports.agreement import Number, by_quantity, fine, ratio_and_scatter
 from reports.claims import VERDICTS, Judged, of_the_conversion
 from reports.evidence import Evidence
 from reports.results import Case
+from reports.studies.experiments import sentences
 from reports.text import QUANTITIES, number, unit_of
 
 HERTZ = {
@@ -34,6 +35,8 @@ class FrontPage:
     conversion: int
     """Errata that may be faults of the text's conversion."""
     trust: Sequence[str]
+    experiments: Sequence[str]
+    """Sentences on predictions beside measurements; none where no result file has them."""
 
     @property
     def table3_rows(self) -> Mapping[str, Sequence[Number]]:
@@ -63,6 +66,7 @@ def front_page(evidence: Evidence, claims: Sequence[Judged], numbers: Sequence[N
         quantities=[_quantity(name, group) for name, group in by_quantity(numbers).items()],
         conversion=sum(erratum["equation"] in of_the_conversion() for erratum in evidence.errata),
         trust=[*_coverage(evidence.studies), *_trust(evidence.studies)],
+        experiments=sentences(evidence.studies["experiments"]) if "experiments" in evidence.studies else [],
     )
 
 

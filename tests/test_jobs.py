@@ -1,4 +1,4 @@
-"""Six jobs of a tribologist, as scripts of documented commands: they run, and their outputs hold together."""
+"""Jobs of a tribologist, as scripts of documented commands: they run, and their outputs hold together."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def rough(n: int, pixel: float, rms: float, seed: int) -> Any:
 
 def test_every_job_is_run_here_and_copies_no_data() -> None:
     assert {path.stem for path in JOBS.glob("*.sh")} == {
-        "measured", "loads", "track", "arrays", "patches", "yield",
+        "measured", "loads", "track", "arrays", "patches", "yield", "film",
     }  # fmt: skip
     assert {path.suffix for path in JOBS.iterdir()} == {".sh", ".toml"}
     assert all(os.access(path, os.X_OK) for path in JOBS.glob("*.sh"))
@@ -156,6 +156,17 @@ def test_sizes_of_patches(job: Path) -> None:
     counts = [int(number) for number in re.findall(r"and more: (\d+)", printed)]
     assert sum(counts) == len(made) > 10
     assert counts[0] > counts[-1]  # small patches are the most frequent
+
+
+@pytest.mark.nightly
+def test_friction_of_a_film_over_the_load_beside_an_experiment(job: Path) -> None:
+    run(job, "film")
+    made = [
+        (float(row["load [N]"]), float(row["friction_coefficient_corrected"]))
+        for row in table(job, "film.csv")
+    ]
+    slope = np.polyfit(*np.log(np.transpose(made)), 1)[0]
+    assert slope == pytest.approx(-0.32, abs=0.01)  # measured, Singer and others 1990
 
 
 @pytest.mark.nightly

@@ -50,9 +50,9 @@ def test_every_dependency_states_a_least_version() -> None:
 
 
 EXTRAS_TESTED_ELSEWHERE = {
-    "instrument", "rigorous", "fast", "mutation", "tamaas", "contactmechanics", "aspher", "dev",
+    "instrument", "rigorous", "fast", "docs", "mutation", "tamaas", "contactmechanics", "aspher", "dev",
 }  # fmt: skip
-"""The first three are set up by make beside dev; the others are of studies, which tests do not run."""
+"""The first three are set up by make beside dev; tests run neither the site nor the studies of the others."""
 
 
 def test_what_ci_installs_has_the_extras_that_tests_use() -> None:
@@ -77,6 +77,26 @@ def test_the_table_of_licences_is_that_of_the_pinned_packages() -> None:
             assert licence == licences.licence(installed[name])
         if re.search("GPL|general public", licence, re.IGNORECASE):
             assert (name, by) in COPYLEFT
+
+
+def test_the_tools_are_those_of_the_extra() -> None:
+    """Once as a group, once for versions of pip that know none."""
+    extra = PROJECT["project"]["optional-dependencies"]["dev"]
+    assert PROJECT["dependency-groups"]["dev"] == [each for each in extra if not each.startswith("rough-")]
+
+
+def test_the_model_needs_numpy_scipy_and_three_small_packages() -> None:
+    """Of what is installed with it, the rest is for verification, pictures, files of meshes and reports."""
+    needed = {"numpy", "scipy", "psutil", "threadpoolctl", "tomli-w"}
+    others = {re.split("[>=]", line)[0] for line in PROJECT["project"]["dependencies"]} - needed
+    names = {"scikit-fem": "skfem"}
+    blocked = "".join(f"sys.modules[{names.get(name, name)!r}] = None\n" for name in sorted(others))
+    solve = "import refimpl as rf; assert rf.solve(rf.read_scene('table1-rough'), grid=24).converged"
+    done = subprocess.run(
+        [sys.executable, "-c", f"import sys\n{blocked}{solve}"],
+        cwd=ROOT, capture_output=True, encoding="utf-8", check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
 
 
 OPTIONAL = (

@@ -139,7 +139,7 @@ class CoefficientMap:
             key: np.round(value, DECIMALS).tolist() if isinstance(value, np.ndarray) else value
             for key, value in asdict(self).items()
         }
-        path.write_text(json.dumps(document | arrays, separators=(",", ": ")) + "\n")
+        path.write_text(json.dumps(document | arrays, separators=(",", ": ")) + "\n", encoding="utf-8")
 
     @classmethod
     def read(cls, path: Path) -> CoefficientMap:
@@ -147,7 +147,7 @@ class CoefficientMap:
 
         Raises InputError for another version, and for axes that do not rise or are incomplete.
         """
-        document = json.loads(path.read_text())
+        document = json.loads(path.read_text(encoding="utf-8"))
         if document["version"] != VERSION:
             raise InputError("version", document["version"], f"{VERSION}")
         slope, wavelength, position, offset = (tuple(document[name]) for name in AXES)

@@ -42,8 +42,3 @@ def pressed_strip(x: Array, nu: float, half_width: float = 1.0) -> Array:
 def sheared_strip(x: Array, nu: float, half_width: float = 1.0) -> Array:
     """u_y(x) - u_y(0) of the surface under unit traction along +x on |x| < half_width, in traction / E."""
     return (1.0 + nu) * (1.0 - 2.0 * nu) * np.clip(x, -half_width, half_width)
-
-
-def pressed_strip_along(x: Array, nu: float, half_width: float = 1.0) -> Array:
-    """u_x(x) of the surface under unit pressure on |x| < half_width, in units of pressure / E."""
-    return -sheared_strip(x, nu, half_width)

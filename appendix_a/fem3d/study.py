@@ -139,7 +139,7 @@ def load(path: Path) -> list[dict[str, object]]:
     if not path.exists():
         return []
     try:
-        table = json.loads(path.read_text())
+        table = json.loads(path.read_text(encoding="utf-8"))
         known = table["table"] == "appendix_a_3d" and table["version"] == TABLE_VERSION
         rows: list[dict[str, object]] = table["points"]
     except (ValueError, KeyError, TypeError) as broken:
@@ -154,7 +154,7 @@ def save(path: Path, command: str, rows: list[dict[str, object]]) -> None:
     part = path.with_suffix(".part")
     lines = ",\n".join(json.dumps(line, separators=(",", ":")) for line in rows)
     top = json.dumps(header(command), indent=1).removesuffix("\n}")
-    part.write_text(f'{top},\n "points": [\n{lines}\n]}}\n')
+    part.write_text(f'{top},\n "points": [\n{lines}\n]}}\n', encoding="utf-8")
     os.replace(part, path)
 
 

@@ -46,18 +46,18 @@ from refimpl.accuracy.iteration_error import CORRECTED
 from refimpl.grid import Array
 from refimpl.model.forces import EDGE_SHARE
 
-STRAIGHT_SCATTER = 0.2  # standard deviation; its bound is 95 % of the range of an even distribution
+STRAIGHT_SCATTER = 0.21  # standard deviation over a step: Westergaard's strips along ten directions: 0.17 to 0.22
 PEAK_BIAS, PEAK_BIAS_SPREAD = (
     0.028,
     0.009,
 )  # c0, s_c: the parabola of a pressure peaks too high, over its curvature drop
 _DIVERGED = 1e100  # in SI units; squares are still doubles
 _LEAST_SHARE = 1e-6  # in place of zero
-_SLOPES, _AREAS = 2, 8  # powers of the resolved share that divide the scatter of slopes and areas
-_MOST_AREA = 0.15  # largest sigma over the area: with the edge bias the bar then reaches zero area
+_WAVES = 1.2  # share of the waviness in the scatter of areas
+_SLOPES = 2  # power of the share that is not single elements, which divides the scatter of slopes
 
 AREA = Prior(
-    0.18, 6.0
+    0.16, 6.0
 )  # unit: element area times the root of number and symmetry multiplicity of the edge elements
 BULK = Prior(0.003, 1.0)  # friction without tau's share; unit: value (edge / area)^1.5
 PEAK = Prior(0.008, 2.5)  # unit: the peak's curvature drop
@@ -66,8 +66,12 @@ OTHER = Prior(0.02, 2.0)  # unit: value (edge / area)^1.5
 # 95 %: approach of a contact that ends at a free border, over depth and border fraction; full contacts of
 # squares and of 2 : 1 on 32 to 256 elements are 0.083 to 0.086 from their limit
 BORDER_BOUND = 0.13
+# of `slope_scatter`: 95 % of a single grid's mu lie within 2.5 of it; of 189 grids where it matters 97 % are
+# within 1.5, and 1.4 are the standard error where slopes of neighbours are unrelated
+SLOPE_SHARE = 0.2
 # standard deviation of mu by slopes under that pressure, over border fraction and rms slope: the errors there
 BORDER_SLOPES = 0.1
+PLASTIC_COUNT = 0.36  # 95 % bound of the area at the hardness, over the root of its edge elements
 SLOPE_BOUND = 0.35  # the like by differenced slopes, over `slope_displacement_error`: of 38 scenes 0.24
 SHEAR_BOUNDS = {"approach": 0.6, "normal_force": 1.2, "max_pressure": 0.6}
 """95 % bounds of the change by tau on the contact's edge, over its change of the depth: of the approach under
@@ -139,7 +143,7 @@ def _area_that_may_yield(fine: GridFeatures, peak: Estimate) -> float:
 
 def _estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
     grids = _Grids([at_first_contact(result) for result in results])
-    area, load = _area(grids.results), grids.finest("normal_force")
+    area, load = _area(grids), grids.finest("normal_force")
     dmu_dA = grids.each(lambda result: result.dmu_dA)
     across = grids.edge_scatter * load, slope_scatter(grids.results) * load
     found = {
@@ -169,9 +173,8 @@ def _estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
 def _sheared(grids: _Grids, name: str, area: Estimate, share: Array, unit: float) -> Estimate:
     """A number that contains ``share`` times the contact area, and slopes times ``unit``."""
     values = grids.found(name) - share * grids.found("contact_area")
-    rest = grids.smooth(
-        values, BULK, grids.edge_scatter * grids.finest(name), slope_scatter(grids.results) * unit
-    )
+    slopes = SLOPE_SHARE * slope_scatter(grids.results) * unit
+    rest = grids.smooth(values, BULK, grids.edge_scatter * grids.finest(name), slopes)
     per_area = float(share[-1])
     return Estimate(rest.value + per_area * area.value, rest.half_width).widened(per_area * area.half_width)
 
@@ -223,20 +226,11 @@ def slope_scatter(results: Sequence[GridFeatures]) -> Array:
     """
     uneven = np.array([result.slope_sampling_error for result in results])
     whole = abs(results[-1].numbers["friction_coefficient"])
-    wider = np.maximum(uneven, np.minimum(uneven / _resolved(results, _SLOPES), whole))
+    single = np.array([single_element_share(r.edge, r.numbers["contact_area"]) for r in results])
+    resolved = np.maximum(1 - single**2, _LEAST_SHARE) ** _SLOPES
+    wider = np.maximum(uneven, np.minimum(uneven / resolved, whole))
     scatter: Array = np.hypot(wider, [BORDER_SLOPES * r.border_fraction * r.rms_slope for r in results])
     return scatter
-
-
-def _resolved(results: Sequence[GridFeatures], power: int) -> Array:
-    """The share of the contact that is not single elements, to a power; it divides a scatter.
-
-    The powers are empirical, from surfaces of noise: with 1 bars of slopes were too short by a tenth, with 4
-    those of corrected areas by a sixth.
-    """
-    single = np.array([single_element_share(r.edge, r.numbers["contact_area"]) for r in results])
-    share: Array = np.maximum(1 - single**2, _LEAST_SHARE) ** power
-    return share
 
 
 def _weights(size: Array, spacing: Array) -> Array:
@@ -265,18 +259,16 @@ def discretisation(results: Sequence[GridFeatures]) -> dict[str, dict[str, float
     return {name: {"discretisation": bound} for name, bound in bounds.items()}
 
 
-def _area(results: Sequence[GridFeatures]) -> Estimate:
+def _area(grids: _Grids) -> Estimate:
     """Contact area: the excess along the edge is a regressor, and the scatter is that of a count.
 
     Single elements have a larger bias: on finer grids less of their area remains. The likeliest excess is 1
     on the training scenes, 1.5 to 2 on surfaces of noise and on measured ones.
     """
-    area, excess = np.transpose([(result.numbers["contact_area"], result.excess) for result in results])
-    scatter = area_scatter(results)
-    prior = AREA._replace(scatter=AREA.scatter * scatter[-1])
-    spread = math.hypot(EDGE_SIZE_SPREAD, OBLONG_SPREAD * math.log(results[-1].grid.aspect))
-    bias = Bias(excess / EDGE_SIZE, EDGE_SIZE, spread)
-    return fit_line(area, scatter / scatter[-1], prior, bias)
+    fine = grids.results[-1]
+    spread = math.hypot(EDGE_SIZE_SPREAD * math.hypot(1.0, _WAVES * fine.waviness), OBLONG_SPREAD * math.log(fine.grid.aspect))
+    bias = Bias(grids.each(lambda result: result.excess_unit), EDGE_SIZE, spread)
+    return grids.smooth(grids.found("contact_area"), AREA, grids.each(area_scatter), bias=bias)
 
 
 def _plastic_area(fine: GridFeatures) -> Estimate:
@@ -284,31 +276,19 @@ def _plastic_area(fine: GridFeatures) -> Estimate:
     edge, dA = fine.plastic_edge, fine.grid.element_area
     counted = math.sqrt(edge / EDGE_SHARE * dA * fine.symmetry_multiplicity) if edge > 0 else 0.0
     along = 0.5 * dA * math.sqrt(fine.plastic_straight.squares)
-    bound = edge + math.hypot(2 * AREA.scatter * counted, along)
+    bound = edge + math.hypot(PLASTIC_COUNT * counted, along)
     return Estimate(fine.numbers.get("plastic_area", 0.0), bound)
 
 
-def area_scatter(results: Sequence[GridFeatures]) -> Array:
-    """Return each grid's unit of the area's scatter (m^2): that of a count, and more for single elements.
+def area_scatter(result: GridFeatures) -> float:
+    """Return the unit of the area's scatter (m^2): the root of a count, of edge elements and undecided ones.
 
-    For single elements it is at most what makes the bar reach zero area.
+    Symmetric ones come in and out together, and short waves of the pressure add as much by themselves.
     """
-    edge, area, dA, multiplicity = np.transpose(
-        [
-            (
-                result.edge,
-                result.numbers["contact_area"],
-                result.grid.element_area,
-                result.symmetry_multiplicity,
-            )
-            for result in results
-        ]
-    )
-    counted = np.sqrt(np.maximum(edge / (EDGE_SHARE * dA), 1.0) * multiplicity) * dA
-    scatter: Array = np.maximum(
-        counted, np.minimum(counted / _resolved(results, _AREAS), _MOST_AREA * area / AREA.scatter)
-    )
-    return np.hypot(scatter, [straight_scatter(r) / AREA.scatter for r in results])
+    elements = max(result.edge, 0.0) / EDGE_SHARE + result.undecided
+    together = result.symmetry_multiplicity + (_WAVES * result.waviness) ** 2
+    counted = math.sqrt(elements * result.grid.element_area * together)
+    return math.hypot(counted, straight_scatter(result) / AREA.scatter)
 
 
 def straight_scatter(result: GridFeatures) -> float:

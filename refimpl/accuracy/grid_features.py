@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from refimpl.accuracy.contact_edge import mean_excess
+from refimpl.accuracy.contact_edge import EDGE_SIZE, excess_unit
 from refimpl.accuracy.iteration_error import CORRECTED, merged, reported_numbers
 from refimpl.accuracy.peak import NO_PEAK, Peak, deepest, highest
 from refimpl.grid import Array, Grid, inner, second_differences
 from refimpl.grid.straight_edges import NO_STRAIGHT_EDGES, StraightEdges, straight_edges
 from refimpl.grid.symmetry import symmetry_multiplicity
 from refimpl.model.certificate import State
-from refimpl.model.forces import perimeter_corrected_area
+from refimpl.model.forces import EDGE_SHARE, perimeter_corrected_area
 from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
@@ -45,6 +45,8 @@ class GridFeatures:
     rms_slope : root mean square slope, weighted by pressure
     slope_displacement_error : how far differenced slopes leave displacements along the vertical open (m)
     highest_areas : contact area (m^2) of at least k/16 of the maximum pressure, k = 0 to 16
+    waviness : sum of the pressure's second differences along an axis over that of the pressure
+    undecided : area within the contact whose pressure a wave between the elements may take to zero (m^2)
     hardness : Pa, None without one
     loaded : whether the load is prescribed, which then has no discretisation error, or the approach
     """
@@ -67,6 +69,8 @@ class GridFeatures:
     rms_slope: float = 0.0
     slope_displacement_error: float = 0.0
     highest_areas: tuple[float, ...] = ()
+    waviness: float = 0.0
+    undecided: float = 0.0
     hardness: float | None = None
     loaded: bool = True
 
@@ -89,8 +93,19 @@ class GridFeatures:
     @property
     def excess(self) -> float:
         """Mean excess of the counted contact area along its edge (m^2)."""
-        straight = self.straight.faces * self.grid.element_area
-        return mean_excess(self.edge, straight, self.numbers["contact_area"])
+        return EDGE_SIZE * self.excess_unit
+
+    @property
+    def excess_unit(self) -> float:
+        """Area (m^2) of which that is `EDGE_SIZE` in the mean."""
+        area, face = self.numbers["contact_area"], EDGE_SHARE * self.grid.element_area
+        return excess_unit(
+            edge=self.edge,
+            straight=self.straight.faces * face,
+            border=self.border_fraction * area * EDGE_SHARE,
+            yielded=self.numbers.get("plastic_area", 0.0) / area if area else 0.0,
+            areas=(area, self.grid.nominal_area - area),
+        )
 
     @property
     def corrected(self) -> dict[str, float]:
@@ -134,6 +149,8 @@ class GridFeatures:
             rms_slope=math.sqrt(state.slopes.mean_square(state.pressure)),
             slope_displacement_error=slope_displacement_error(problem, state),
             highest_areas=highest_areas(state.pressure, grid),
+            waviness=waviness(state.pressure, grid),
+            undecided=undecided_area(state.pressure, grid),
             hardness=problem.cap if math.isfinite(problem.cap) else None,
             loaded=problem.load is not None,
         )
@@ -157,6 +174,37 @@ def highest_areas(pressure: Array, grid: Grid) -> tuple[float, ...]:
         return ()
     levels = loaded[-1] * np.arange(_LEVELS + 1) / _LEVELS
     return tuple(float(n) * grid.element_area for n in loaded.size - np.searchsorted(loaded, levels))
+
+
+def waviness(pressure: Array, grid: Grid) -> float:
+    """Return ``sum |second differences| / sum f`` of the contact along the axis where it is more.
+
+    It falls as h^2 where waves of the pressure are resolved, and is 2 of single elements.
+
+    >>> waviness(np.pad([[2.0]], 2), Grid.square(1.0, 5)), waviness(np.ones((4, 4)), Grid.square(1.0, 4))
+    (2.0, 0.0)
+    """
+    total = float(pressure.sum())
+    if not 0 < total < math.inf:
+        return 0.0
+    box = grid.window_around(pressure > 0, margin=1).slices
+    bends = (second_differences(pressure[box], axis, periodic=grid.periodic) for axis in (0, 1))
+    return max(float(np.abs(bend[pressure[box] > 0]).sum()) for bend in bends) / total
+
+
+def undecided_area(pressure: Array, grid: Grid) -> float:
+    """Return the area (m^2) of elements amid the contact with less pressure than half of its second difference.
+
+    Between such an element and its neighbours the pressure may reach zero; a finer grid may open a gap there.
+
+    >>> pressure = 1.0 - np.cos(np.pi * np.arange(8) / 4 + 0.1)[:, None] * np.ones(8)
+    >>> undecided_area(pressure, Grid.square(8.0, 8, periodic=True))
+    16.0
+    """
+    around = grid.padded(pressure, 1)
+    near = around[2:, 1:-1], around[:-2, 1:-1], around[1:-1, 2:], around[1:-1, :-2]
+    amid = np.minimum.reduce([pressure, *near]) > 0
+    return float(np.count_nonzero(amid & (6 * pressure < sum(near)))) * grid.element_area
 
 
 def slope_displacement_error(problem: Problem, state: State) -> float:

@@ -68,9 +68,12 @@ def solve(
         grid; after another load the nested grids are faster
     progress : called with a line of text at every step of the work
 
-    Raises `InputError` for input that is out of range, before anything large is allocated; and, by "dense"
-    alone, `ArithmeticError` where the equations of a problem on its way are singular. Other methods end with
-    a status then.
+    Raises
+    ------
+    InputError
+        input out of range, before anything large is allocated
+    ArithmeticError
+        by "dense" alone: singular equations of a problem on its way; other methods end with a status
     """
     if progress is not None and not callable(progress):
         raise InputError("progress", progress, "a function of one line of text")

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from refimpl.errors import InputError, require_size
+from refimpl.errors import InputError, is_whole, require_size
 from refimpl.grid.fields import Array, Mask, differences
 from refimpl.grid.window import Window
 
@@ -35,8 +35,7 @@ class Grid:
 
     def __post_init__(self) -> None:
         for count in self.shape:
-            whole = isinstance(count, int | np.integer) and not isinstance(count, bool)
-            if not (whole and 1 <= count <= MAX_COUNT):
+            if not (is_whole(count) and 1 <= count <= MAX_COUNT):
                 allowed = f"a whole number of elements per side, 1 to {MAX_COUNT}"
                 raise InputError("grid", count, allowed)
         for length in self.lengths:

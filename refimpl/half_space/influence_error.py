@@ -63,8 +63,13 @@ def coefficient_error(
     position : of the element on the waviness, 0 crest to 0.5 valley as the lower body sees it; the
         worst one by default
 
-    Raises `InputError` for steeper slopes and shorter waves than the table's.
+    Raises
+    ------
+    InputError
+        steeper slopes and shorter waves than the table's
 
+    Examples
+    --------
     >>> steel = Material(E=200e9, nu=0.3)
     >>> coefficient_error(0.02, steel) > coefficient_error(0.02, steel, steel)
     True

@@ -4,16 +4,21 @@ At a fixed contact ``mu = F / P`` is linear in ``(tau, beta)``, and the contact 
 So the model of all rows is solved and linearised, fitted within its bounds, and linearised again at the fit
 (Gauss and Newton), until the linear model predicts what the next solves give. Further parameters are fitted
 by their logarithms, in steps of half of their value at most.
+
+A row that is off by `BLUNDER` standard uncertainties is dropped if the others agree without it: then the
+row is wrong. Otherwise nothing is dropped, as the model may be wrong.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import least_squares
+from scipy.stats import chi2
 
 from refimpl.grid import Array
 from refimpl.identification.data_table import Row
@@ -27,9 +32,10 @@ MAX_PASSES, MAX_FURTHER_PASSES = 6, 8  # without further parameters, and with th
 _AGREED = 0.02  # standard uncertainties by which prediction and solve may differ at the end
 _FURTHER_AGREED = 0.1  # with further parameters, likewise: elements that yield or not change mu by steps
 _FULL_STEPS = 4  # passes with further parameters after which steps are halved: such steps can alternate
-_CORRELATED = 0.5  # share of the bars' variance that all rows have in common: one grid, one surface
 _LONGEST = math.log(1.5)  # step of a further parameter's logarithm in one pass
 REALISATIONS = "realisations"  # the part of the covariance by the choice of a realisation
+BLUNDER = 4.0  # standard uncertainties: of noise one row in 16,000
+UNLIKELY = 0.01  # probability of a chi-square as large, below which the model or the data are doubted
 _ALONE = 1e-6  # share of a row's weight that the other rows leave to judge it, at least
 _RIDGE = 1e-10  # relative, added to the normal matrix: rows at one A/P leave it singular
 
@@ -42,10 +48,12 @@ class Fit:
     between : (rows,), variances of friction by the choice of a realisation, as they weigh rows
     scatter : of the draws about their mean
     gain : (parameters, rows), change of ``free`` by a change of the measured mu
+    root : (kept rows, rows), inverse root of the covariance of measured less predicted mu
     residuals : measured less predicted mu over the standard uncertainty with bars
     deleted : measured mu less that of the fit to the other rows, over its standard uncertainty
     nonlinearity : largest difference of prediction and solve, in standard uncertainties
     limited : whether a further parameter went its longest step in the last pass
+    dropped : index of the row that the fit does not use
     """
 
     theta: Array
@@ -54,7 +62,7 @@ class Fit:
     between: Array
     scatter: Scatter
     gain: Array
-    weights: Array
+    root: Array
     predicted: Array
     residuals: Array
     deleted: Array
@@ -62,6 +70,12 @@ class Fit:
     nonlinearity: float
     passes: int
     limited: bool = False
+    dropped: int | None = None
+
+    @property
+    def degrees(self) -> int:
+        """Degrees of freedom of chi-square."""
+        return max(len(self.root) - len(self.theta), 0)
 
 
 def fit_rows(
@@ -104,13 +118,13 @@ def data_covariance(rows: Sequence[Row], responses: Sequence[Response], between:
 
 
 def _bars(responses: Sequence[Response]) -> dict[str, Array]:
-    parts = {
-        "numerical": np.array([r.numerical for r in responses]) / COVERAGE,
-        "contact edge": np.array([r.contact_edge for r in responses]) / COVERAGE,
-    }
-    return {
-        name: _CORRELATED * np.outer(u, u) + (1 - _CORRELATED) * np.diag(u**2) for name, u in parts.items()
-    }
+    """Covariances of the model: rows share the factor of the mean excess, all else is each row's own."""
+    bars, shared, edge = (
+        np.array([getattr(r, name) for r in responses]) / COVERAGE
+        for name in ("numerical", "shared", "contact_edge")
+    )
+    own = np.maximum(bars**2 - shared**2, 0.0)
+    return {"numerical": np.outer(shared, shared) + np.diag(own), "contact edge": np.diag(edge**2)}
 
 
 def linear_fit(
@@ -121,14 +135,37 @@ def linear_fit(
     away: float,
     passes: int,
 ) -> Fit:
-    """Fit the linear models of all rows by generalised least squares, within the bounds and without."""
+    """Fit the linear models of all rows by generalised least squares, within the bounds and without.
+
+    One row may be dropped (see above).
+    """
+    every = np.arange(len(rows))
+    found = _linear_fit(rows, responses, between, scattered, every)
+    wrong = int(np.argmax(np.abs(found.deleted)))
+    if abs(found.deleted[wrong]) >= BLUNDER and found.degrees > 1:
+        rest = _linear_fit(rows, responses, between, scattered, np.delete(every, wrong))
+        if chi2.sf(rest.chi_square, rest.degrees) >= UNLIKELY:
+            deleted = np.where(every == wrong, found.deleted, rest.deleted)
+            found = replace(rest, deleted=deleted, dropped=wrong)
+    return replace(found, nonlinearity=away, passes=passes)
+
+
+def _linear_fit(
+    rows: Sequence[Row],
+    responses: Sequence[Response],
+    between: Array,
+    scattered: Scatter,
+    kept: NDArray[np.intp],
+) -> Fit:
+    """Fit to the rows with the indices ``kept``."""
     measured = np.array([row.mu for row in rows])
     slopes = np.array([response.slopes for response in responses])
     origin = np.array([0.0] * BOUNDED + list(responses[0].at[BOUNDED:]))
     at_origin = np.array([response.predict(origin) for response in responses])
     scale = max(float(np.max(np.abs(measured))), 1e-12) / np.max(np.abs(slopes), axis=0)
     covariance = data_covariance(rows, responses, between)
-    root = np.linalg.inv(np.linalg.cholesky(covariance))
+    root = np.zeros((len(kept), len(rows)))
+    root[:, kept] = np.linalg.inv(np.linalg.cholesky(covariance[np.ix_(kept, kept)]))
     design, wanted = root @ slopes * scale, root @ (measured - at_origin)
     normal = design.T @ design
     normal += _RIDGE * np.trace(normal) * np.eye(len(scale))
@@ -136,7 +173,7 @@ def linear_fit(
     step = gain @ (measured - at_origin)
     moved = _bounded(design, wanted, step / scale, scale) * scale
     predicted = at_origin + slopes @ moved
-    misfit, weights = root @ (measured - predicted), root.T @ root
+    misfit = root @ (measured - predicted)
     return Fit(
         theta=origin + moved,
         free=origin + step,
@@ -144,13 +181,13 @@ def linear_fit(
         between=between,
         scatter=scattered,
         gain=gain,
-        weights=weights,
+        root=root,
         predicted=predicted,
         residuals=(measured - predicted) / np.sqrt(np.diag(covariance)),
-        deleted=_deleted(weights, slopes @ gain, measured - predicted),
+        deleted=_deleted(root.T @ root, slopes @ gain, measured - at_origin - slopes @ step),
         chi_square=float(misfit @ misfit),
-        nonlinearity=away,
-        passes=passes,
+        nonlinearity=math.inf,
+        passes=0,
         limited=bool(np.any(np.abs(moved[BOUNDED:]) > _LONGEST * (1 - 1e-6))),
     )
 
@@ -158,10 +195,11 @@ def linear_fit(
 def _deleted(weights: Array, hat: Array, misfit: Array) -> Array:
     """Residual of each row from the fit to the others, in standard uncertainties (Cook and Weisberg 1982).
 
-    Rows are correlated, so it is ``(W e)_i / sqrt((W - W X G)_ii)``; 0 for a row that a parameter rests on.
+    Rows are correlated, so it is ``(W e)_i / sqrt((W - W X G)_ii)``, without bounds; 0 for a row that a
+    parameter rests on.
     """
     own = np.diag(weights - weights @ hat)
-    alone = own < _ALONE * np.diag(weights)
+    alone = own <= _ALONE * np.diag(weights)
     return np.where(alone, 0.0, weights @ misfit / np.sqrt(np.where(alone, 1.0, own)))
 
 

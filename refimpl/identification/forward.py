@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD
 from refimpl.driver.solve import solve
 from refimpl.grid import Array
 from refimpl.scene.parameters import parameters, with_parameter
@@ -30,8 +31,10 @@ class Response:
     mu : friction coefficient, without tau on the mean excess of the contact edge
     slopes : ``d mu / d tau`` (1/Pa), ``d mu / d beta``, ``d mu / d ln p``
     numerical, contact_edge : 95 % half-widths of mu: error bar, and choice at contact edges
+    shared : the part of ``numerical`` that all rows have in common, by the factor of the mean excess
     inputs : 95 % half-widths of mu by toleranced parameter, with the sign of the derivative
-    area_per_load : A / P (m^2/N); border, plastic : shares of the contact on the border, at the hardness
+    contact_fraction : A / A0, without the mean excess
+    border, plastic : shares of the contact on the border, at the hardness
     pressures, weights : pressures (Pa) and ``cos cos dA / P`` (1/Pa) that stand for the contact
     solves : solves of the scene; warnings : the solution's
     scatter : standard uncertainty of mu by the choice of a realisation, where this is a mean over several
@@ -41,9 +44,10 @@ class Response:
     mu: float
     slopes: tuple[float, ...]
     numerical: float
+    shared: float
     contact_edge: float
     inputs: Mapping[str, float]
-    area_per_load: float
+    contact_fraction: float
     border: float
     plastic: float
     pressures: tuple[float, ...]
@@ -121,10 +125,15 @@ def _response(
 ) -> Response:
     solution = solve(scene, grid)
     if not solution.converged or not solution.contact.any():
-        raise ArithmeticError(f"the solve at {scene.load:.4g} N ended as {solution.status.value}")
+        share = 100 * float(solution.contact.mean())
+        raise ArithmeticError(
+            f"the solve at {scene.load:.4g} N ended as {solution.status.value} with {share:.3g} % of the "
+            "domain in contact: check the unit of the loads"
+        )
     inputs, solves = _inputs(scene, solution, tolerances)
     by_tau, by_beta = friction_slopes(scene, solution)
-    by_tau -= solution.features.excess / scene.load
+    excess = solution.features.excess
+    by_tau -= excess / scene.load
     slopes = (by_tau, by_beta, *(_log_slope(scene, solution, name) for name in further))
     parts = dict(solution.uncertainty["friction_coefficient_corrected"])
     edge = parts.pop("active set", 0.0)
@@ -136,9 +145,10 @@ def _response(
         mu=solution.friction_coefficient_corrected,
         slopes=slopes,
         numerical=min(math.fsum(parts.values()), 10 * abs(solution.friction_coefficient)),
+        shared=COVERAGE * EDGE_SIZE_SPREAD / EDGE_SIZE * excess / scene.load * solution.problem.friction.jump,
         contact_edge=edge,
         inputs=inputs,
-        area_per_load=solution.contact_area / scene.load,
+        contact_fraction=(solution.contact_area - excess) / solution.grid.nominal_area,
         border=on_border * solution.problem.counts_from_first_contact,
         plastic=solution.plastic_area / solution.contact_area,
         pressures=pressures,

@@ -22,6 +22,7 @@ from refimpl.identification.notes import notes
 from refimpl.identification.profile import Profile, quantile
 from refimpl.identification.result import WIDE, Identification, Interval, Prediction
 from refimpl.identification.varying_profile import VaryingProfile
+from refimpl.model.friction import Friction
 from refimpl.scene.parameters import check_tolerances, parameters
 from refimpl.scene.scene import Scene
 
@@ -59,7 +60,12 @@ def identify(
     memory, key : keep solves by a key of scene and settings, so that a stopped fit goes on
     report : called with a line of text before each solve
 
-    Raises `InputError` for input that is out of range, `ArithmeticError` where a solve does not converge.
+    Raises
+    ------
+    InputError
+        input out of range
+    ArithmeticError
+        a solve that does not converge
     """
     rows, tolerances = check_rows(rows), dict(tolerances or {})
     further = _check(scene, loads, tolerances, realisations, fit)
@@ -90,7 +96,6 @@ def _result(
     units = np.array([1.0, 1.0, *(values[name].value for name in further)])
     factor = _best_factor(covariance, np.mean([one.slopes for one in fitted.responses], axis=0))
     gradient = np.array([factor, 1.0] + [0.0] * len(further))
-    degrees = max(len(rows) - len(values), 0)
     return Identification(
         rows=rows,
         values=values,
@@ -102,8 +107,8 @@ def _result(
         residuals=tuple(map(float, fitted.residuals)),
         deleted=tuple(map(float, fitted.deleted)),
         chi_square=fitted.chi_square,
-        degrees=degrees,
-        probability=float(chi2.sf(fitted.chi_square, degrees)) if degrees else 1.0,
+        degrees=fitted.degrees,
+        probability=float(chi2.sf(fitted.chi_square, fitted.degrees)) if fitted.degrees else 1.0,
         laws=compare(rows, fitted),
         passes=fitted.passes,
         fitted=fitted,
@@ -180,6 +185,8 @@ def _check(
     """Return the names of the further parameters."""
     if not isinstance(scene, Scene):
         raise InputError("scene", scene, "a Scene")
+    if not isinstance(scene.friction, Friction):
+        raise InputError("friction", scene.friction, "a Friction, whose tau and beta are found")
     for load in loads:
         require_number("loads", load, "positive loads in N", above=0)
     further = further_parameters(scene, fit)

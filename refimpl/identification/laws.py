@@ -42,21 +42,21 @@ def compare(rows: Sequence[Row], fitted: Fit) -> tuple[Law, ...]:
     slopes = np.array([response.slopes[:BOUNDED] for response in fitted.responses])
     at_zero = fitted.predicted - slopes @ fitted.theta[:BOUNDED]
     further = len(fitted.theta) - BOUNDED
-    root = np.asarray(np.linalg.cholesky(fitted.weights).T)
+    root = fitted.root
     scale = np.max(np.abs(slopes), axis=0)
     wanted = root @ (measured - at_zero)
 
     linear = {"tau": fitted.theta[0], "beta": fitted.theta[1]}
-    laws = [_law("tau + beta f", linear, fitted.chi_square, rows, further)]
+    laws = [_law("tau + beta f", linear, fitted.chi_square, len(root), further)]
     for k, (name, parameter) in enumerate((("constant shear", "tau"), ("Coulomb", "beta"))):
         x, misfit = nnls((root @ slopes[:, [k]]) / scale[k], wanted)
-        laws.append(_law(name, {parameter: float(x[0] / scale[k])}, misfit**2, rows, further))
-    if len(rows) > 3:
-        laws.append(_limited(rows, fitted, root, measured))
+        laws.append(_law(name, {parameter: float(x[0] / scale[k])}, misfit**2, len(root), further))
+    if len(root) > 3:
+        laws.append(_limited(fitted, measured))
     return tuple(sorted(laws, key=lambda law: (law.aicc, law.bic)))
 
 
-def _limited(rows: Sequence[Row], fitted: Fit, root: Array, measured: Array) -> Law:
+def _limited(fitted: Fit, measured: Array) -> Law:
     """The law with a limit, from several starts: the least of them."""
     pressures = [np.array(response.pressures) for response in fitted.responses]
     weights = [np.array(response.weights) for response in fitted.responses]
@@ -74,7 +74,7 @@ def _limited(rows: Sequence[Row], fitted: Fit, root: Array, measured: Array) -> 
 
     def misfit(x: Array) -> Array:
         predicted = fitted.predicted + friction(*(x * scales)) - base
-        return np.asarray(root @ (measured - predicted))
+        return np.asarray(fitted.root @ (measured - predicted))
 
     starts = ([tau / scales[0], beta / scales[1], share] for share in (0.3, 0.6, 1.0))
     found = [least_squares(misfit, np.maximum(start, 1e-9), bounds=(0, np.inf)) for start in starts]
@@ -85,15 +85,13 @@ def _limited(rows: Sequence[Row], fitted: Fit, root: Array, measured: Array) -> 
         "min(tau + beta f, r_max)",
         dict(zip(("tau", "beta", "r_max"), map(float, x), strict=True)),
         chi_square,
-        rows,
+        len(fitted.root),
         len(fitted.theta) - BOUNDED,
     )
 
 
-def _law(
-    name: str, parameters: Mapping[str, float], chi_square: float, rows: Sequence[Row], further: int
-) -> Law:
-    n, k = len(rows), len(parameters) + further
+def _law(name: str, parameters: Mapping[str, float], chi_square: float, n: int, further: int) -> Law:
+    k = len(parameters) + further
     few = n - k - 1 <= 0
     aicc = math.inf if few else chi_square + 2 * k + 2 * k * (k + 1) / (n - k - 1)
     values = {key: float(value) for key, value in parameters.items()}

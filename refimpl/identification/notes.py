@@ -9,19 +9,21 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from refimpl.identification.design import MAX_BORDER
+from refimpl.identification.fit import UNLIKELY
 from refimpl.identification.forward import COVERAGE, Response
 from refimpl.identification.laws import DECISIVE
 from refimpl.identification.profile import BOUNDED
 from refimpl.identification.result import WIDE, Identification
 
 _SETTLED = 0.5  # standard uncertainties by which the last solves may differ from their prediction
-_UNLIKELY = 0.01  # probability of a chi-square as large, below which the model or the data are doubted
+_LEAST, _FULL = 0.005, 0.99  # A/A0 at every load; a ball's contact of 0.005 is 0.08 of the side wide
 
 
 def notes(result: Identification) -> tuple[str, ...]:
     """Return the warnings, the most important first."""
     responses = result.fitted.responses
     return (
+        *_scale(responses),
         *_determined(result),
         *_further(result),
         *_settled(result),
@@ -30,6 +32,23 @@ def notes(result: Identification) -> tuple[str, ...]:
         *_law(result),
         *_limits(responses),
     )
+
+
+def _scale(responses: Sequence[Response]) -> Iterator[str]:
+    """Loads out of the scene's scale. Friction alone shows no unit: A/P of a ball is a power of P."""
+    most = max(response.contact_fraction for response in responses)
+    if most < _LEAST:
+        yield (
+            f"less than {100 * most:.1g} % of the domain is in contact at every load: loads are too small "
+            "for the scene; check their unit (kN taken for N?), or take a smaller domain"
+        )
+    if all(one.border > MAX_BORDER or one.contact_fraction > _FULL for one in responses):
+        yield (
+            "contact fills the domain or reaches its border at every load: loads are too large for the "
+            "scene; check their unit, or take a larger domain"
+        )
+    elif any(one.border > MAX_BORDER for one in responses):
+        yield "contact reaches the domain's border: mu of a larger domain differs"
 
 
 def _determined(result: Identification) -> Iterator[str]:
@@ -68,7 +87,7 @@ def _settled(result: Identification) -> Iterator[str]:
 
 
 def _residuals(result: Identification) -> Iterator[str]:
-    if result.degrees and result.probability < _UNLIKELY:
+    if result.degrees and result.probability < UNLIKELY:
         yield (
             f"chi-square {result.chi_square:.3g} of {result.degrees} degrees of freedom has probability "
             f"{result.probability:.1g}: surfaces, law or uncertainties are wrong, intervals too short"
@@ -76,7 +95,8 @@ def _residuals(result: Identification) -> Iterator[str]:
     for k in result.outliers:
         load, deviation = result.rows[k].load, result.deleted[k]
         away = f"{deviation:+.1f} standard uncertainties"
-        yield f"row {k + 1} ({load:.4g} N) is off by {away} from the fit to the other rows"
+        text = f"row {k + 1} ({load:.4g} N) is off by {away} from the fit to the other rows"
+        yield text + ", and dropped from it: check its units" * (k == result.fitted.dropped)
 
 
 def _model(result: Identification) -> Iterator[str]:
@@ -84,8 +104,6 @@ def _model(result: Identification) -> Iterator[str]:
     bars = np.array([math.hypot(r.numerical, r.contact_edge) / COVERAGE for r in responses])
     if (wide := int(np.sum(bars > measured))) > 0:
         yield f"error bars of the model exceed the data's uncertainty in {wide} rows: take a finer grid"
-    if any(response.border > MAX_BORDER for response in responses):
-        yield "contact reaches the domain's border: mu of a larger domain differs"
     if (most := max(response.plastic for response in responses)) > 0:
         yield f"up to {100 * most:.0f} % of the contact is at the hardness: A/P changes little there"
 

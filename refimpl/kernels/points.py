@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -46,7 +48,8 @@ def tangential_integral(x: ArrayLike, y: ArrayLike, dx: float, dy: float) -> Arr
 
 def scale(dx: float, dy: float) -> float:
     """The power of two above the larger edge. Raises ``InputError`` unless both are positive and finite."""
-    for name, edge in (("dx", dx), ("dy", dy)):
+    edges: dict[str, Any] = {"dx": dx, "dy": dy}
+    for name, edge in edges.items():
         one = edge.item() if isinstance(edge, np.ndarray) and edge.ndim == 0 else edge
         require_number(name, one, "a positive finite length, one number", above=0)
     return float(np.ldexp(1.0, np.frexp(float(max(dx, dy)))[1]))

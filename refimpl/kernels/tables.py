@@ -13,7 +13,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, is_whole
 from refimpl.kernels.cerruti import CERRUTI
 from refimpl.kernels.love import LOVE
 from refimpl.kernels.points import scale
@@ -67,7 +67,7 @@ def tangential_table(
 
 def _edges(n: int, m: int, dx: float, dy: float | None) -> tuple[float, float, float]:
     for name, count in (("n", n), ("m", m)):
-        if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
+        if not is_whole(count) or count < 1:
             raise InputError(name, count, "a whole number of offsets, at least 1")
     dy = dx if dy is None else dy
     unit = scale(dx, dy)

@@ -127,7 +127,10 @@ def inspect(
     size : edges (m) of the window about ``centre``; by default all that is measured around it
     **keys : of `MeasuredSurface`: unit, pixel_size, channel, level, outliers, low_pass, high_pass, ...
 
-    Raises `InputError`.
+    Raises
+    ------
+    InputError
+        a file or a key that cannot be used
     """
     if isinstance(path, MeasuredSurface):
         surface = path

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, ClassVar, Self
 
@@ -71,9 +71,10 @@ class MeasuredSurface(Surface):
     kind: ClassVar[str] = "measured"
 
     def __post_init__(self) -> None:
-        if not isinstance(self.path, str | Path) or not str(self.path) or "\0" in str(self.path):
-            raise InputError("path", self.path, "the path of a file")
-        object.__setattr__(self, "path", Path(self.path))
+        path: object = self.path
+        if not isinstance(path, str | Path) or not str(path) or "\0" in str(path):
+            raise InputError("path", path, "the path of a file")
+        object.__setattr__(self, "path", Path(path))
         if self.unit is not None:
             require_one_of("unit", self.unit, tuple(UNITS))
         if self.pixel_size is not None:
@@ -105,7 +106,7 @@ class MeasuredSurface(Surface):
     def reading(self) -> RawHeights:
         """The content of the file, as it is (read once)."""
         pixel = None if self.pixel_size is None else pixel_edges("pixel_size", self.pixel_size)
-        found = read_untrusted(self._file, lambda: read(self._file, self.unit, pixel, self.channel))
+        found = read_untrusted(self._file, partial(read, self._file, self.unit, pixel, self.channel))
         refuse_huge(self._file, found.heights)
         return found
 
@@ -140,7 +141,7 @@ class MeasuredSurface(Surface):
         reading = self._oriented.reading
         return reading.area if self.repeats else extent(reading, self._oriented.centre, offset)
 
-    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+    def heights_on(self, grid: Grid, offset: tuple[float, float]) -> Array:
         if self.repeats:
             return self._repeated(grid, offset)
         if grid.periodic:

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from refimpl.errors import keep_doubles, require_number
+from refimpl.errors import InputError, keep_doubles, require_number
 from refimpl.grid import Array, Mask
 
 
+@runtime_checkable
 class FrictionLaw(Protocol):
-    """Interface of a law ``r(f)`` on elements in contact.
+    """Interface of a law ``r(f)`` on elements in contact; what has its members may be a scene's friction.
 
     ``jump`` is ``r`` at vanishing pressure (Pa); ``slope`` is the part of ``dr/df`` that solvers may take
     into their linear systems. The rest, ``r - slope f``, is the held traction. It is constant on the active
     set if the law ``is_linear``; otherwise solvers update it together with the slopes of the surface.
+    Pressures are arrays (Pa) of any shape, active sets masks of the same shape, tractions arrays of it (Pa).
     """
 
     @property
@@ -76,6 +78,15 @@ class Friction:
     def held_traction(self, pressure: Array, active: Mask) -> Array:
         """Return ``tau`` on the active set, zero outside (Pa)."""
         return self.tau * active.astype(np.float64)
+
+
+def require_law(law: object) -> None:
+    """Raise `InputError` unless this is a law with a jump and a slope that are not negative."""
+    if not isinstance(law, FrictionLaw):
+        members = "jump, slope, is_linear, traction and held_traction"
+        raise InputError("friction", law, f"a Friction, or a FrictionLaw of one's own: {members}")
+    require_number("friction.jump", law.jump, "a finite shear strength in Pa, not negative", at_least=0)
+    require_number("friction.slope", law.slope, "a finite number, not negative", at_least=0)
 
 
 def is_frictionless(law: FrictionLaw) -> bool:

@@ -30,7 +30,8 @@ class Material:
 
     def __post_init__(self) -> None:
         allowed = f"a positive Young's modulus in Pa, {LEAST} to {RIGID}, or infinity for a rigid body"
-        if not (isinstance(self.E, float) and math.isinf(self.E) and self.E > 0):
+        E: object = self.E
+        if not (isinstance(E, float) and math.isinf(E) and E > 0):
             require_number("E", self.E, allowed, at_least=LEAST, at_most=RIGID)
         require_number("nu", self.nu, "a Poisson's ratio in (-1, 0.5]", above=-1, at_most=0.5)
         if self.hardness is not None:

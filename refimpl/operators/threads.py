@@ -11,6 +11,8 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from refimpl.operating_system import cores
+
 _NAMES = ("OMP_NUM_THREADS", "DUCC0_NUM_THREADS")
 
 
@@ -19,7 +21,7 @@ def allowed_threads() -> int:
     said = _number(os.environ.get("OMP_NUM_THREADS", "").partition(",")[0])
     if said is not None:
         return said
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return cores()
 
 
 @contextmanager

@@ -8,8 +8,8 @@ from typing import Literal
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.model.problem import Problem, Terms
+from refimpl.operating_system import free_memory
 from refimpl.planning.expected_contact import ExpectedContact, expected_contact
-from refimpl.planning.free_memory import free_memory
 from refimpl.planning.terms import Term, budget_of, choose
 
 Method = Literal["dense", "fft", "paper"]

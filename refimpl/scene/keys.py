@@ -110,7 +110,7 @@ def type_in_words(hint: object) -> str:
     'number or [number, number]'
     """
     if get_origin(hint) in (Union, types.UnionType):
-        words = [type_in_words(one) for one in get_args(hint) if one is not type(None)]
+        words = [type_in_words(one) for one in get_args(hint) if one not in (type(None), Any)]
         return " or ".join(dict.fromkeys(words))
     if get_origin(hint) is tuple:
         return f"[{', '.join(type_in_words(one) for one in get_args(hint))}]"

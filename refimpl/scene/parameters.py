@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import is_dataclass, replace
 
 from refimpl.errors import InputError, require_number, require_one_of
 from refimpl.scene.scene import Body, Scene
@@ -23,7 +24,10 @@ def parameters(scene: Scene) -> dict[str, float]:
     >>> parameters(read_scene("hertz"))["load"]
     70.0
     """
-    found = {"load": scene.load, "friction.tau": scene.friction.tau, "friction.beta": scene.friction.beta}
+    law = vars(scene.friction) if is_dataclass(scene.friction) else {}
+    found = {"load": scene.load}
+    numbers = {name: number for name, number in law.items() if isinstance(number, float)}
+    found |= {f"friction.{name}": number for name, number in numbers.items() if math.isfinite(number)}
     for name in BODIES:
         body = getattr(scene, name)
         found |= {f"{name}.material.E": body.material.E, f"{name}.material.nu": body.material.nu}
@@ -77,6 +81,8 @@ def differentiable_parameters(scene: Scene) -> dict[str, float]:
 
 def check_tolerances(scene: Scene, tolerances: Mapping[str, float]) -> None:
     """Raise `InputError` unless every name is a parameter that moves and every tolerance is relative."""
+    if tolerances and not scene.friction.is_linear:
+        raise InputError("friction", scene.friction, "a law that is linear, for derivatives (of tolerances)")
     known = differentiable_parameters(scene) if tolerances else {}
     for name, tolerance in tolerances.items():
         if name not in known:

@@ -22,7 +22,7 @@ from refimpl.errors import (
     within,
 )
 from refimpl.grid import MAX_COUNT, Array, Grid
-from refimpl.model.friction import Friction
+from refimpl.model.friction import Friction, require_law
 from refimpl.model.materials import Material, Pair
 from refimpl.surfaces import Surface, SurfaceSum, SurfaceWarning, as_surface
 from refimpl.surfaces.shapes import Sphere
@@ -59,7 +59,7 @@ class Scene:
     Parameters
     ----------
     upper, lower : the two bodies; the upper one slides along ``(cos phi, sin phi)``
-    friction : local friction law, Eq. (1)
+    friction : local friction law: `Friction`, Eq. (1), or a `FrictionLaw` of your own
     load : normal load P (N)
     side : edge of a square domain (m)
     sliding_direction : phi (rad)
@@ -68,16 +68,21 @@ class Scene:
     plastic : whether pressures end at the hardness of the softer body; None: where they reach it
     size : lengths ``(Lx, Ly)`` of a rectangular domain (m), in place of ``side``
 
+    Raises
+    ------
+    InputError
+        names the field
+
+    Notes
+    -----
     With measured surfaces neither side nor size need be given: the domain is then the largest rectangle that
     all of them cover at the offset, centres on one another. A measured surface on the upper body is turned
     over about the x axis, unless stated otherwise (`refimpl.MeasuredSurface`); arrays are used as given.
-
-    Raises `InputError` naming the field.
     """
 
     upper: Body
     lower: Body
-    friction: Friction
+    friction: Friction | Any  # a `FrictionLaw`; Any, since a reader of its tau knows that it is a Friction
     load: float
     side: float | None = None
     sliding_direction: float = 0.0
@@ -90,8 +95,7 @@ class Scene:
         for name in ("upper", "lower"):
             if not isinstance(getattr(self, name), Body):
                 raise InputError(name, getattr(self, name), "a Body")
-        if not isinstance(self.friction, Friction):
-            raise InputError("friction", self.friction, "a Friction")
+        require_law(self.friction)
         require_number("load", self.load, "a positive normal load in N", above=0)
         require_number("sliding_direction", self.sliding_direction, "a finite angle in rad")
         allowed = f"a finite length in m, at most {MOST} either way"

@@ -19,8 +19,8 @@ from refimpl.model.materials import Material
 from refimpl.scene.key_texts import BODY, FRICTION, MATERIAL, SCENE
 from refimpl.scene.parameters import check_tolerances
 from refimpl.scene.scene import Body, Scene
-from refimpl.surfaces import surface_from_dict
-from refimpl.surfaces.surface import SurfaceSum
+from refimpl.surfaces import ArraySurface, SurfaceSum, surface_from_dict
+from refimpl.surfaces.from_table import KINDS
 
 _MAX_BYTES = 1_000_000  # a scene is a page of text; anything larger is not a scene
 _MAX_PARTS = 32  # parts of a dotted key: parse time grows with their square
@@ -110,9 +110,11 @@ def scene_from_dict(table: Mapping[str, Any], folder: Path) -> Scene:
 
 
 def scene_to_dict(scene: Scene) -> dict[str, Any]:
-    """The scene as a plain table; raises `InputError` for surfaces that are bare arrays."""
+    """The scene as a plain table; raises `InputError` for arrays, and for surfaces and laws of one's own."""
     if not isinstance(scene, Scene):
         raise InputError("scene", scene, "a Scene")
+    if type(scene.friction) is not Friction:
+        raise InputError("friction", scene.friction, "a Friction: scene files have no other law")
     bodies = {name: _body_to_dict(getattr(scene, name)) for name in ("upper", "lower")}
     table = _given(scene, ("load", *_OPTIONAL_KEYS)) | {"friction": _given(scene.friction, FRICTION)} | bodies
     return table if scene.size is None else table | {"size": list(scene.size)}
@@ -149,6 +151,9 @@ def _body(table: Mapping[str, Any], name: str, folder: Path) -> Body:
 
 def _body_to_dict(body: Body) -> dict[str, Any]:
     parts = body.surface.parts if isinstance(body.surface, SurfaceSum) else (body.surface,)
+    for part in parts:
+        if type(part) is not KINDS.get(part.kind, ArraySurface):  # an array says itself what to do
+            raise InputError("surface", part.label, f"a surface of scene files: {', '.join(KINDS)}")
     rigid = {"E": _RIGID} if body.material.is_rigid else {}
     return {
         "material": _given(body.material, MATERIAL) | rigid,

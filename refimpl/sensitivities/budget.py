@@ -86,7 +86,10 @@ def budget(
     tolerances : relative 95 % half-widths by the names of `refimpl.scene.parameters`; none by default
     sampling : 95 % half-widths of ensemble means by the numbers' names, where there is an ensemble
 
-    Raises `InputError` for unknown names, and as `refimpl.sensitivity` does.
+    Raises
+    ------
+    InputError
+        unknown names, and as `refimpl.sensitivity`
     """
     tolerances, sampling = _mapping("tolerances", tolerances), _mapping("sampling", sampling)
     check_tolerances(scene, tolerances)

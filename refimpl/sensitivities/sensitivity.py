@@ -102,7 +102,7 @@ def sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = 
     }
     solved = {name: derivatives for name, (derivatives, _) in quotients.items()}
     # 95 % bound of what counting elements in two solves leaves uncertain, as in the error bars of one grid
-    counting = 2 * math.sqrt(2) * AREA.scatter * float(area_scatter([solution.features])[0])
+    counting = 2 * math.sqrt(2) * AREA.scatter * area_scatter(solution.features)
     counted = {
         name: (derivatives["contact_area"], counting / span)
         for name, (derivatives, span) in quotients.items()
@@ -122,6 +122,8 @@ def _check(scene: Scene, solution: Solution) -> None:
         raise InputError("scene", scene, "a Scene")
     if not isinstance(solution, Solution):
         raise InputError("solution", solution, "a Solution")
+    if not scene.friction.is_linear:
+        raise InputError("friction", scene.friction, "a law that is linear, for derivatives")
     if not solution.contact.any():
         raise InputError("solution", solution.status.value, "a solution in contact")
     if not solution.certified:

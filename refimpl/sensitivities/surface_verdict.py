@@ -133,7 +133,10 @@ def pressed_on_a_flat(
         tenth of the area into contact
     friction : none by default
 
-    Raises `InputError`.
+    Raises
+    ------
+    InputError
+        input out of range
     """
     upper, lower = Body(Material(math.inf, material.nu), Flat()), Body(material, surface)
     friction = friction or Friction()

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from refimpl.errors import InputError, size_text
 from refimpl.grid import Array, Grid
@@ -16,7 +15,7 @@ _SQUARE = 1.01  # ratio of a pixel's edges, up to which pixels without stated ed
 _SPANS = 1e-6  # relative, between the array's stated size and the domain: rounding of typed lengths
 
 
-def checked(data: NDArray[Any]) -> Array:
+def checked(data: Any) -> Array:
     """Return a copy of the heights (m) that cannot be written to.
 
     Raises `InputError` unless they are a 2-D array of finite real numbers; masked ones count as not finite.

@@ -118,7 +118,7 @@ class GaussianRoughness(Surface):
         lattice = periodic and self.ellipse.is_isotropic  # another length has another lattice
         return ("rms",) if lattice else tuple(name for name in self.parameters() if name != "seed")
 
-    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+    def heights_on(self, grid: Grid, offset: tuple[float, float]) -> Array:
         return self._field(grid.x + offset[0], grid.y + offset[1], grid) * self._scale(grid)
 
     def _field(self, x: Array, y: Array, grid: Grid) -> Array:

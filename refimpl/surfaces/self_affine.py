@@ -90,7 +90,7 @@ class SelfAffineRoughness(Surface):
 
     def _fix_size(self) -> None:
         """Check the one size that is given, and derive the other from the PSD's integrals."""
-        sizes = {"rms": self.rms, "rms_gradient": self.rms_gradient}
+        sizes: dict[str, Any] = {"rms": self.rms, "rms_gradient": self.rms_gradient}
         present = [name for name, value in sizes.items() if value is not None]
         if len(present) != 1:
             what = "both" if present else "neither"
@@ -159,7 +159,7 @@ class SelfAffineRoughness(Surface):
     def to_dict(self) -> dict[str, Any]:
         return {"kind": self.kind, **self.parameters()}
 
-    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+    def heights_on(self, grid: Grid, offset: tuple[float, float]) -> Array:
         if self.long_cut < 2.0 * max(grid.spacings):
             need = f"at least two elements, {2.0 * max(grid.spacings):.3g} m: the grid holds no wave of it"
             raise InputError("long_cut", self.long_cut, need)

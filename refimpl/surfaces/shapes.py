@@ -18,7 +18,7 @@ class Flat(Surface):
 
     kind: ClassVar[str] = "flat"
 
-    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+    def heights_on(self, grid: Grid, offset: tuple[float, float]) -> Array:
         return grid.zeros
 
 
@@ -46,7 +46,7 @@ class Sphere(Surface):
     def parameters(self) -> dict[str, float]:
         return {"radius": self.radius}
 
-    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+    def heights_on(self, grid: Grid, offset: tuple[float, float]) -> Array:
         x, y = (_from_centre(grid, axis) + offset[axis] for axis in (0, 1))
         if grid.periodic:
             x, y = (s - L * np.round(s / L) for s, L in zip((x, y), grid.lengths, strict=True))

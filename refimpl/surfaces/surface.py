@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.errors import InputError, require_number, require_size
+from refimpl.errors import InputError, is_whole, require_number, require_size
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.arrays import check_domain, checked, interpolation_notes, sampled, sampling_note
 
@@ -49,14 +49,35 @@ class Detail:
 class Surface(ABC):
     """The shape of one body's surface: heights in m, positive upwards.
 
-    Immutable. Surfaces and arrays of heights add up: ``Sphere(0.14) + GaussianRoughness(...) + array``.
+    Immutable. Surfaces and arrays of heights add up: ``Sphere(0.14) + GaussianRoughness(...) + array``. A new
+    one is a frozen dataclass with the method `heights_on`; all else has defaults.
     """
 
-    kind: ClassVar[str]
+    kind: ClassVar[str] = ""
     __array_ufunc__ = None  # so that `array + surface` asks the surface, not each number of the array
 
+    def __init_subclass__(cls, **keywords: Any) -> None:
+        super().__init_subclass__(**keywords)
+        if "_sample" in vars(cls):  # before version 0.2
+            warnings.warn(f"{cls.__name__}: _sample is now heights_on", DeprecationWarning, stacklevel=2)
+            cls.heights_on = vars(cls)["_sample"]  # type: ignore[method-assign]  # its former name
+
     @abstractmethod
-    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array: ...
+    def heights_on(self, grid: Grid, offset: tuple[float, float]) -> Array:
+        """Return heights (m, positive upwards) at ``(grid.x[i] + offset[0], grid.y[j] + offset[1])``.
+
+        Called by `heights`, which users call. All grids must sample one continuous surface; on a periodic one
+        it repeats with ``grid.lengths``.
+
+        Parameters
+        ----------
+        grid : ``grid.x`` (Mx,) and ``grid.y`` (My,) are the element centres (m) from the domain's corner
+        offset : along x and y (m)
+
+        Returns
+        -------
+        array of ``grid.shape``, (Mx, My)
+        """
 
     def heights(self, grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> Array:
         """Return heights (m, positive upwards) at ``(x_i + offset_x, y_j + offset_y)``, in the grid's shape.
@@ -75,7 +96,11 @@ class Surface(ABC):
         ox, oy = offset
         if not (math.isfinite(ox) and math.isfinite(oy)):
             raise InputError("offset", offset, "two finite lengths in m")
-        return self._sample(grid, (float(ox), float(oy)))
+        z = np.asarray(self.heights_on(grid, (float(ox), float(oy))))
+        if z.shape != grid.shape or z.dtype.kind not in "fiu":
+            found = f"{z.dtype} of shape {z.shape} from {type(self).__name__}.heights_on"
+            raise InputError("heights", found, f"heights (m) of the grid's shape {grid.shape}")
+        return z
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
         """Return how heights are read, cut, levelled, resampled or normalised here, one sentence each."""
@@ -115,7 +140,7 @@ class Surface(ABC):
     @property
     def label(self) -> str:
         """Name of the surface in messages."""
-        return self.kind
+        return self.kind or type(self).__name__
 
     def on_upper_body(self) -> Surface:
         """Return the surface as it lies on the upper body."""
@@ -154,10 +179,10 @@ class SurfaceSum(Surface):
     def parts(self) -> tuple[Surface, ...]:
         return self.terms
 
-    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+    def heights_on(self, grid: Grid, offset: tuple[float, float]) -> Array:
         z = grid.zeros
         for term in self.terms:
-            z += term._sample(grid, offset)
+            z += term.heights_on(grid, offset)
         return z
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
@@ -194,7 +219,7 @@ class ArraySurface(Surface):
             return None
         return self.data.shape[0] * self.pixel[0], self.data.shape[1] * self.pixel[1]
 
-    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+    def heights_on(self, grid: Grid, offset: tuple[float, float]) -> Array:
         check_domain((self.data.shape[0], self.data.shape[1]), self.pixel, grid.lengths)
         return sampled(self.data, grid, offset)
 
@@ -230,12 +255,11 @@ def as_surface(value: Surface | NDArray[Any]) -> Surface:
     raise InputError("surface", value, "a surface, a sum of surfaces or a 2-D array of heights in m")
 
 
-def require_seed(seed: object) -> int:
+def require_seed(seed: Any) -> int:
     """The seed of a random roughness as a whole number; else InputError."""
-    whole = isinstance(seed, int | np.integer) and not isinstance(seed, bool)
-    if not whole or not 0 <= seed < 2**63:  # type: ignore[operator]  # a number, as above
+    if not is_whole(seed) or not 0 <= seed < 2**63:
         raise InputError("seed", seed, "a whole number, 0 <= seed < 2^63")
-    return int(seed)  # type: ignore[call-overload, no-any-return]  # as above
+    return int(seed)
 
 
 def finite(field: str, value: Any, allowed: str) -> float:

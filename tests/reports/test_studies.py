@@ -13,6 +13,7 @@ from reports.generator import render
 from reports.result_files import committed
 from reports.results import ResultFileError
 from reports.studies import exhibit
+from reports.studies.experiments import sentences
 from tests.reports.sample import case, results
 
 
@@ -45,10 +46,23 @@ EXTREMES = Names(
     precision={"arithmetic": ["f4"], "digits lost": {"N": [6.5]}, "cause": {"N": "sum"}, "cure": {"N": ""}},
 )  # fmt: skip
 EXTREMES["lawful states"] = [Names(statuses={"fft": {"converged": 5, "cycle": 3, "stuck": 4}})]
-GRIDS = Names(M=512, transforms=1234.4, seconds=1)
-GRIDS |= {"bytes an element": 99.6, "peak memory (bytes)": 1.234e9, "processor seconds": 12.345}
-NEIGHBOUR = Names(cold=41.2)
-NEIGHBOUR["from the neighbour"] = 12.6
+POINTS = [
+    {
+        "at": at,
+        "measured": 40.0,
+        "measured_half_width": 2.0,
+        "predicted": s,
+        "numerical": 0.01,
+        "input": 3.0,
+        "error": s - 40.0,
+        "uncertainty": 3.6,
+        "within": s < 50,
+    }
+    for at, s in ((0.5, 41.23), ("r", 99.0))
+]
+EXPERIMENTS = [
+    Names(title="Ball on Si", unit="nm", over="load", trend_only=True, failure="wear", points=POINTS)
+]
 SLICES = [
     {"invariant": "turn", "solver": s, "held": n, "claim": "alike"} for s, n in (("a", 2), ("b", 3), ("a", 4))
 ]
@@ -106,10 +120,9 @@ DOCUMENTS: dict[str, Any] = {
     "coverage": COVERAGE,
     "coverage_classes": {"table": [BARS, OTHERS]},
     "cross_code": CODES,
+    "experiments": {"experiments": EXPERIMENTS},
     "extremes": EXTREMES,
     "hypothesis": Names(slices=SLICES, processor_seconds=1),
-    "large_grids": {"rows": [GRIDS, {"failure": "memory"}]},
-    "sweeps": {"grid": 256, "neighbours": [NEIGHBOUR], "seconds a run": {"2": 0.12345}},
 }
 ROWS: list[tuple[str, int, list[Any]]] = [
     ("accuracy_costs", 0, [("class", "mu", "48 (1.23)", "finer")]),
@@ -124,15 +137,14 @@ ROWS: list[tuple[str, int, list[Any]]] = [
     ("cross_code", 1,  # a figure of merit below its tolerance is a share above one
      [("peak", "Peak", "pass, 0.5", "fail, 3"), ("order", "Order", "fail, 2", "pass, 0.25"),
       ("shear", "Shear", "not applicable", "error")]),
+    ("experiments", 0,
+     [(0.5, "40 ± 2", "41.23", "0.01", "3", "+1.2", "3.6", True),
+      ("r", "40 ± 2", "99", "0.01", "3", "+59", "3.6", False)]),
     ("extremes", 0, [("load", 5, 3, 1, 1, 0, 3, 7), ("scale", 1, 0, 0, 0, 1, None, None)]),
     ("extremes", 3, [("N", 6.5, "sum", "it is this code's form")]),
     ("extremes", 4, [("tau", "none", "one", "several", 7)]),
     ("extremes", 5, [(2, 3.5, 4, 0.5)]),
     ("hypothesis", 0, [("turn", "alike", 6, 3)]),
-    ("large_grids", 0,
-     [("surface", "terms", "512²", "status", "finest iterations", "1234", "100", "1.23", "12.3")]),
-    ("sweeps", 0, [("2", "0.123")]),
-    ("sweeps", 1, [("surface", "neighbour", "41", "13")]),
 ]  # fmt: skip
 
 
@@ -177,6 +189,15 @@ def test_series_of_figures_and_codes_that_are_not_there() -> None:
     ((_, kept),) = exhibit("extremes", EXTREMES).figures
     assert kept == {"digits kept": {"load: s": [12, 3, 7, "wrong"]}}
     assert any("C (not installed)" in text for text in exhibit("cross_code", CODES).paragraphs)
+
+
+def test_the_first_page_says_where_the_model_fails() -> None:
+    said = sentences({"experiments": EXPERIMENTS})
+    assert said == [
+        "1 experiments: ball on Si",
+        "1 of 2 points lie within U_val, 1 by trend alone",
+        "The model fails for ball on Si (wear)",
+    ]
 
 
 def test_committed_samples_are_apart_and_show_only_what_was_judged() -> None:

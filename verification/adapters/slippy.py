@@ -37,7 +37,7 @@ def version_of(interpreter: str) -> str | None:
     ask = "from importlib.metadata import version; print(version('slippy'))"
     try:
         done = subprocess.run(
-            [interpreter, "-c", ask], capture_output=True, text=True, timeout=60, check=True
+            [interpreter, "-c", ask], capture_output=True, encoding="utf-8", timeout=60, check=True
         )
     except (OSError, subprocess.SubprocessError):
         return None

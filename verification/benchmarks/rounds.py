@@ -52,7 +52,7 @@ class Turns:
             environment = {**os.environ, **dict.fromkeys(THREADS, str(threads))}
             try:
                 done = subprocess.run(
-                    command, env=environment, capture_output=True, text=True, timeout=limit, check=False
+                    command, env=environment, capture_output=True, encoding="utf-8", timeout=limit
                 )
             except subprocess.TimeoutExpired:
                 raise Failed(f"took longer than {limit:g} s") from None

@@ -9,7 +9,6 @@ from __future__ import annotations
 import argparse
 import json
 import math
-import resource
 import statistics
 import time
 from collections.abc import Callable
@@ -19,6 +18,7 @@ import numpy as np
 import scipy.fft as sfft
 
 from refimpl.grid import Array, Grid, Window
+from refimpl.operating_system import peak_memory
 from refimpl.operators.fft import FFTInfluence
 from verification.benchmarks.codes import Pressed, codes
 from verification.benchmarks.problems import problem
@@ -115,19 +115,6 @@ def _convolution_seconds(shape: tuple[int, int]) -> float:
         sfft.irfft2(sfft.rfft2(field) * hat, s=shape)
         seconds.append(time.perf_counter() - started)
     return statistics.median(seconds)
-
-
-def peak_memory() -> int:
-    """Return the largest resident size of this process so far (bytes).
-
-    Linux keeps that of a parent in ``ru_maxrss`` across exec, so the process's own record is read first.
-    """
-    status = Path("/proc/self/status")
-    if status.is_file():
-        for line in status.read_text(encoding="ascii", errors="replace").splitlines():
-            if line.startswith("VmHWM:"):
-                return 1024 * int(line.split()[1])
-    return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
 if __name__ == "__main__":

@@ -37,11 +37,7 @@ EXAMPLES = {
     "element": "--slope-deg 6.5 --nu 0.3 --E 118e9 --upper-nu 0.3 --upper-E 200e9",
 }
 
-WAVE_OPTIONS: Options = {
-    "--slope-deg": option("maximum slope of the profile (degrees)", type=number, required=True),
-    "--wavelength": option("in half-widths of the strip", type=number, required=True),
-    "--position": option("centre of the strip: crest 0, flank 0.25, valley 0.5", type=number, required=True),
-    "--nu": option("Poisson's ratio", type=number, required=True),
+WAVE_OPTIONS: Options = appendix_tables.LOOK_UP_OPTIONS | {
     "--offsets": option("distances from the centre, in half-widths", type=numbers, required=True),
 }
 WEDGE_OPTIONS: Options = {

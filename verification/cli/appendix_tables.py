@@ -18,13 +18,10 @@ SHARE = 0.1  # second order over first; more has a caution
 LOOK_UP_OPTIONS: Options = {
     "--slope-deg": option("maximum slope of the profile (degrees)", type=number, required=True),
     "--wavelength": option("in half-widths of the strip", type=number, required=True),
-    "--position": option("crest 0, flank 0.25, valley 0.5", type=number, required=True),
+    "--position": option("centre of the strip: crest 0, flank 0.25, valley 0.5", type=number, required=True),
     "--nu": option("Poisson's ratio", type=number, required=True),
 }
-ELEMENT_OPTIONS: Options = {
-    "--slope-deg": option("maximum slope of the wave (degrees)", type=number, required=True),
-    "--nu": option("Poisson's ratio", type=number, required=True),
-}
+ELEMENT_OPTIONS: Options = {name: LOOK_UP_OPTIONS[name] for name in ("--slope-deg", "--nu")}
 PAIR: tuple[str, str, Options] = (
     "a pair",
     "the first orders enter as lower minus upper",

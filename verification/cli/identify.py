@@ -103,6 +103,15 @@ def document(found: Identification) -> dict[str, object]:
         "predictions": [{"load": p.load, **_interval(p.mu)} for p in found.predictions],
         "residuals": list(found.residuals),
         "deleted_residuals": list(found.deleted),
+        "outliers": [
+            {
+                "row": k + 1,
+                "load": found.rows[k].load,
+                "deviation": found.deleted[k],
+                "dropped": k == found.fitted.dropped,
+            }
+            for k in found.outliers
+        ],
         "chi_square": found.chi_square,
         "degrees_of_freedom": found.degrees,
         "probability": found.probability,

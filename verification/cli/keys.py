@@ -1,4 +1,4 @@
-"""`rough-friction keys`: every key of scene and study files, at the prompt and as docs/scene-file.md."""
+"""`rough-friction keys`: every key of scene and study files, at the prompt and in docs/scene-file.md."""
 
 from __future__ import annotations
 
@@ -6,12 +6,10 @@ import argparse
 import re
 from collections.abc import Mapping
 from dataclasses import asdict
-from importlib import resources
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.options import Options, option, output_text
-from verification.cli.output import check_outputs, columns, emit, show
+from verification.cli.options import Options, option, output_file
+from verification.cli.output import check_outputs, columns, emit, refusal, show
 
 if TYPE_CHECKING:
     from refimpl.scene.keys import Key
@@ -24,11 +22,11 @@ EPILOG = """examples:
   rough-friction keys --markdown docs/scene-file.md
 """
 
-HEAD = ("key", "type", "unit", "default", "allowed", "also in", "meaning")
+HEAD = ("key", "unit", "default", "meaning", "type", "allowed", "also in")
 
 OPTIONS: Options = {
     "word": option("keys with this word in them", metavar="WORD", nargs="?", default=""),
-    "--markdown": option("write the page of all keys", metavar="FILE", type=output_text),
+    "--markdown": option("update the tables of keys in a page", metavar="PAGE", type=output_file),
 }
 
 
@@ -37,11 +35,13 @@ def run(options: argparse.Namespace) -> int:
     from verification.framework.files import write_text
 
     check_outputs((), markdown=options.markdown, json=options.json)
-    if options.markdown == Path("-"):
-        show(page().rstrip("\n"))
-        return 0
     if options.markdown is not None:
-        write_text(page(), options.markdown)
+        try:
+            text = options.markdown.read_text(encoding="utf-8")
+        except (OSError, ValueError) as unreadable:
+            allowed = f"a page with places for tables, like docs/scene-file.md ({unreadable})"
+            raise refusal("--markdown", str(options.markdown), allowed) from unreadable
+        write_text(page(text), options.markdown)
         show(f"{options.markdown}: {sum(map(len, _tables().values()))} keys")
         return 0
     word = options.word.lower()
@@ -54,15 +54,12 @@ def run(options: argparse.Namespace) -> int:
     return 0 if document else 1
 
 
-def page() -> str:
-    """Return the page of all keys: `scene-file.md` with a table in the place of each ``{{ name }}``."""
-    from refimpl.surfaces.from_table import KINDS
-
+def page(text: str) -> str:
+    """Return a page with the table of keys after each comment that names one, ``<!-- NAME -->``."""
     found = {title.removeprefix("surface, "): keys for title, keys in _tables().items()}
     tables = {name: _markdown_table(name, keys) for name, keys in found.items()}
-    tables["kinds"] = ", ".join(f"`{kind}`" for kind in KINDS)
-    template = resources.files("verification.cli").joinpath("scene-file.md").read_text(encoding="utf-8")
-    return re.sub(r"{{ (\w+) }}", lambda place: tables[place[1]], template)
+    place = re.compile(rf"(<!-- ({'|'.join(tables)}) -->\n\n)(?:\|.*\n)*")
+    return place.sub(lambda found: f"{found[1]}{tables[found[2]]}\n", text)
 
 
 def _markdown_table(name: str, keys: tuple[Key, ...]) -> str:
@@ -73,7 +70,7 @@ def _markdown_table(name: str, keys: tuple[Key, ...]) -> str:
         allowed = "" if key.allowed == key.kind else key.allowed
         where = [places.get(key.name, "")] if places else []
         default = key.default if key.default in ("required", "-") else f"`{key.default}`"
-        cells = [f"`{key.name}`", key.kind, key.unit, default, allowed, *where, key.meaning]
+        cells = [f"`{key.name}`", key.unit, default, key.meaning, key.kind, allowed, *where]
         lines.append(_row(cells))
     return "\n".join(lines)
 

@@ -59,6 +59,10 @@ def output_file(text: str) -> Path:
         raise argparse.ArgumentTypeError("expected a file's name, not ''")
     if text == "-":
         raise argparse.ArgumentTypeError("'-' is no file, and this is no text for standard output")
+    from refimpl.operating_system import is_device  # here and not above: --help is quick
+
+    if is_device(path.name) and path.suffix:
+        raise argparse.ArgumentTypeError(f"{text!r} is a device on Windows, not a file")
     if os.path.isdir(path):  # no error for long names
         raise argparse.ArgumentTypeError(f"{text!r} is a directory, not a file")
     try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import itertools
 import math
 import os
@@ -12,7 +13,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Self, TypeVar
 
-from verification.framework.files import is_stream, to_json, write_text
+from verification.framework.files import is_stream, rewrite_line, to_json, write_text
 
 if TYPE_CHECKING:
     from refimpl import InputError, Scene
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
 WIDTH = 100
 """Columns that tables and texts keep within."""
-MOST_WORKERS = 1024
 PICTURES = (".png", ".svg", ".pdf")
 Selected = TypeVar("Selected")
 
@@ -70,6 +70,7 @@ def check_suffix(option: str, path: Path | None, suffixes: Sequence[str]) -> Non
 def check_workers(option: str, count: int) -> None:
     """Raise InputError unless so many worker processes can be started."""
     from refimpl.errors import require_number
+    from refimpl.operating_system import MOST_WORKERS
 
     require_number(option, count, f"1 to {MOST_WORKERS} worker processes", at_least=1, at_most=MOST_WORKERS)
 
@@ -122,13 +123,15 @@ def plain(item: object) -> object:
 def show(text: str) -> None:
     """Print a text, what a terminal would obey escaped.
 
-    Where whoever reads has closed the pipe, that and all that follows goes nowhere.
+    Where whoever reads has closed the pipe (on Windows, EINVAL), that and all that follows goes nowhere.
     """
     from refimpl.errors import printable
 
     try:
         print("\n".join(map(printable, text.split("\n"))), flush=True)
-    except BrokenPipeError:
+    except OSError as closed:
+        if closed.errno not in (errno.EPIPE, errno.EINVAL):
+            raise
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
@@ -178,15 +181,13 @@ class StatusLine:
         """Rewrite the line, at most ten times a second."""
         if self._shown and time.monotonic() >= self._next:
             self._next = time.monotonic() + 0.1
-            sys.stderr.write(f"\r\x1b[K{text[:78]}")
-            sys.stderr.flush()
+            rewrite_line(text)
 
     def close(self) -> None:
         """Clear the line; the next text is shown at once."""
         self._next = 0.0
         if self._shown:
-            sys.stderr.write("\r\x1b[K")
-            sys.stderr.flush()
+            rewrite_line("")
 
 
 def judgement(result: Result) -> str:

@@ -53,9 +53,10 @@ def printed(page: Path, paper: str = "a4") -> Path:
         rule = f"<style>@page {{ size: {PAPERS[paper]}; }}</style>\n</head>"
         sized.write_text(page.read_text(encoding="utf-8").replace("</head>", rule, 1), encoding="utf-8")
         command = [found, *FLAGS, f"--user-data-dir={folder}/profile", f"--print-to-pdf={made}"]
-        done = subprocess.run([*command, sized.as_uri()], capture_output=True, text=True)
+        done = subprocess.run([*command, sized.as_uri()], capture_output=True)
         if done.returncode != 0 or not made.exists():
-            raise refusal("--pdf", True, f"a browser that prints ({done.stderr.strip()[-200:]})")
+            said = done.stderr.decode(errors="replace").strip()[-200:]
+            raise refusal("--pdf", True, f"a browser that prints ({said})")
         beside = target.with_name(f".{target.name}.new")
         if compacts():
             import pikepdf

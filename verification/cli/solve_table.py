@@ -56,7 +56,7 @@ def document(solution: Solution, scene: str) -> dict[str, object]:
 def table(solution: Solution, scene: str) -> str:
     """Return the numbers, how well they converged, the terms not modelled, and the warnings."""
     found = [_row(solution, *quantity) for quantity in QUANTITIES]
-    if solution.plan.includes("plastic"):
+    if solution.plastic_area:
         name = f"plastic area, {solution.plastic_share:.1%} of A"
         found.insert(3, _row(solution, "plastic_area", name, 1e6, "mm^2"))
     summary = solution.summary()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import signal
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -123,6 +122,7 @@ def _judged(
     source: Source,
 ) -> Judged:
     """Judge the solver case by case; an end by a signal keeps the verdicts so far."""
+    from refimpl.operating_system import END_SIGNALS
     from verification.framework.files import Progress
     from verification.solver_suite import isolated
     from verification.solver_suite.process import Ended, unwinding
@@ -137,7 +137,7 @@ def _judged(
         progress.tick(f"{result.status:<11} {result.id}")
 
     try:
-        with unwinding(signal.SIGTERM, signal.SIGHUP):  # a batch queue's, a terminal's that is closed
+        with unwinding(*END_SIGNALS):
             isolated.run(
                 source,
                 options.only,

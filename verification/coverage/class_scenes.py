@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 
 import refimpl as rf
-from refimpl.errors import InputError
 from refimpl.grid import Array
 from refimpl.model.materials import Pair
 from verification.coverage.drawing import SIDE, Ball, Dice, Wave, measured_like
@@ -154,9 +153,7 @@ def read_heights(path: Path) -> Array:
     """Return the heights of a measured surface at its own points (m)."""
     surface = rf.MeasuredSurface(path)
     lengths = surface.extent((0.0, 0.0))
-    pitch = surface.pitch(lengths) if lengths else None
-    if lengths is None or pitch is None:
-        raise InputError("--map", str(path), "a measured surface with an end")
+    pitch = surface.pitch(lengths)
     shape = round(lengths[0] / pitch), round(lengths[1] / pitch)
     return surface.sample(rf.Grid(shape, lengths))
 

@@ -17,7 +17,6 @@ from scipy import stats
 import refimpl as rf
 from refimpl.accuracy.digits import LARGEST_SHARE
 from refimpl.accuracy.grid_features import GridFeatures
-from refimpl.model.forces import EDGE_SHARE
 from verification.cli.output import columns
 from verification.coverage.class_scenes import (
     CLASSES,
@@ -30,7 +29,7 @@ from verification.coverage.class_scenes import (
     scene,
     windows_of,
 )
-from verification.coverage.judge import EDGE_SIZE, EDGE_SIZE_BOUND
+from verification.coverage.judge import EDGE_SIZE_BOUND
 from verification.framework.case import jsonable
 from verification.framework.files import write_result
 from verification.framework.provenance import provenance
@@ -46,7 +45,6 @@ NUMBERS = (
     "approach",
 )
 LEVEL = 0.92
-STRAIGHT_SIZE = 0.21  # mean excess of straight edges along the grid over an element: Westergaard's strips
 
 
 def single_grid_rows(one: rf.Scene, M: int, known: rf.Scene | None = None) -> list[dict[str, Any]] | None:
@@ -73,18 +71,15 @@ def reference(finest: rf.Solution, name: str) -> tuple[float, float]:
     """Return a number of the finest grid without its edges' mean excess, and a bound of what is left."""
     features: GridFeatures = finest.features
     value = float(getattr(finest, name))
-    straight = features.straight.faces * features.grid.element_area
-    excess = EDGE_SIZE * features.edge + (STRAIGHT_SIZE - EDGE_SIZE * EDGE_SHARE) * straight
-    bound = (
-        EDGE_SIZE_BOUND * features.edge
-        + 0.5 * math.sqrt(features.straight.squares) * features.grid.element_area
+    bound = math.hypot(
+        EDGE_SIZE_BOUND * features.edge, 0.5 * math.sqrt(features.straight.squares) * features.grid.element_area
     )
     if name == "contact_area":
-        return value - excess, bound
+        return value - features.excess, bound
     if name == "contact_area_corrected":
-        return finest.contact_area - excess, bound
+        return finest.contact_area - features.excess, bound
     if name in ("friction_coefficient", "friction_coefficient_corrected"):
-        return finest.friction_coefficient - features.dmu_dA * excess, features.dmu_dA * bound
+        return finest.friction_coefficient - features.dmu_dA * features.excess, features.dmu_dA * bound
     if name == "max_pressure" and not features.yields:
         return features.peak.height, sum(finest.uncertainty[name].values())
     return value, sum(finest.uncertainty[name].values())

@@ -61,7 +61,7 @@ class Barrel(rf.Surface):
     along: float
     kind: ClassVar[str] = "barrel"
 
-    def _sample(self, grid: rf.Grid, offset: tuple[float, float]) -> Array:
+    def heights_on(self, grid: rf.Grid, offset: tuple[float, float]) -> Array:
         x = grid.x + offset[0] - 0.5 * grid.lengths[0]
         y = grid.y + offset[1] - 0.5 * grid.lengths[1]
         return np.asarray(x[:, None] ** 2 / (2 * self.across) + y[None, :] ** 2 / (2 * self.along))
@@ -80,7 +80,7 @@ class Wave(rf.Surface):
     zigzag: bool = False
     kind: ClassVar[str] = "wave"
 
-    def _sample(self, grid: rf.Grid, offset: tuple[float, float]) -> Array:
+    def heights_on(self, grid: rf.Grid, offset: tuple[float, float]) -> Array:
         along, across = (
             2 * math.pi * number * (centres + shift) / length
             for number, centres, shift, length in zip(
@@ -100,9 +100,9 @@ class Waves(rf.Surface):
     phases: tuple[float, float]
     kind: ClassVar[str] = "waves"
 
-    def _sample(self, grid: rf.Grid, offset: tuple[float, float]) -> Array:
+    def heights_on(self, grid: rf.Grid, offset: tuple[float, float]) -> Array:
         x, y = (
-            Wave(1.0, numbers, phase)._sample(grid, offset)
+            Wave(1.0, numbers, phase).heights_on(grid, offset)
             for numbers, phase in zip(((self.numbers[0], 0), (0, self.numbers[1])), self.phases, strict=True)
         )
         return np.asarray(self.amplitude * (x + y))

@@ -14,7 +14,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from refimpl.identification import identify
+import numpy as np
+
+from refimpl.errors import InputError
+from refimpl.identification import Identification, identify
 from verification.coverage.synthetic_tables import (
     ROUGHNESS_TOLERANCE,
     SyntheticTable,
@@ -29,6 +32,7 @@ from verification.framework.files import Progress, write_result
 from verification.framework.provenance import provenance
 
 LEVEL = 0.92  # share of 95 % intervals that must cover, at least
+BIAS = 0.2  # mean error of tau in its standard uncertainties, at most
 WIDE, NARROW = 0.25, 0.05  # half-widths of tau's interval over tau: above, the warning is due; below, none
 DIGITS = 5  # significant, of the numbers in the result file
 
@@ -49,7 +53,7 @@ class TableSet:
 
 
 SETS: Mapping[str, TableSet] = {
-    "drawn": TableSet(range(5000, 5300), drawn_table),
+    "drawn": TableSet(range(9600, 9780), drawn_table),
     "sharp": TableSet(range(6000, 6060), sharp_table),
     "hardness": TableSet(range(7000, 7040), yielding_table, ("hardness",)),
     "roughness": TableSet(
@@ -62,23 +66,16 @@ SETS: Mapping[str, TableSet] = {
 
 
 def fitted(tables: TableSet, seed: int) -> dict[str, object]:
-    """Return the result of the fit of one table, beside the truth."""
+    """Return the result of the fit of one table, beside the truth; a refused table holds the message."""
     table = tables.make(seed)
-    found = identify(
-        without_friction(table.scene),
-        table.rows,
-        table.grid,
-        loads=(table.new_load,),
-        fit=tables.fit,
-        realisations=tables.realisations,
-        tolerances=tables.tolerances,
-        design=False,
-    )
+    row: dict[str, object] = {"seed": seed, "kind": table.kind, "grid": table.grid, "error": table.error}
+    try:
+        found = _identified(tables, table)
+    except InputError as refused:
+        return row | {"refused": str(refused)}
     tau, beta, mu = found.values["tau"], found.values["beta"], found.predictions[-1].mu
-    truth = table.scene.friction
-    row: dict[str, object] = {
-        "seed": seed,
-        "kind": table.kind,
+    truth, spread = table.scene.friction, np.sqrt(np.diag(found.covariance))
+    row |= {
         "loads": len(table.rows),
         "noise": table.noise,
         "tau": tau.low <= truth.tau <= tau.high,
@@ -87,6 +84,11 @@ def fitted(tables: TableSet, seed: int) -> dict[str, object]:
         "tau_half_width": tau.relative if math.isfinite(tau.relative) else None,
         "tau_error": tau.value / truth.tau - 1,
         "beta_error": beta.value / truth.beta - 1,
+        "tau_deviation": float((tau.value - truth.tau) / spread[0]),
+        "beta_deviation": float((beta.value - truth.beta) / spread[1]),
+        "named": table.wrong in found.outliers,
+        "named_wrongly": len(set(found.outliers) - {table.wrong}),
+        "dropped": None if found.fitted.dropped is None else found.fitted.dropped == table.wrong,
         "measurement_share": found.shares["measurement"][0] / math.sqrt(found.covariance[0, 0]),
         "warned": any("not determined apart" in text for text in found.warnings),
         "solves": found.solves,
@@ -99,28 +101,55 @@ def fitted(tables: TableSet, seed: int) -> dict[str, object]:
     return row
 
 
+def _identified(tables: TableSet, table: SyntheticTable) -> Identification:
+    """The fit of a table without a first guess of friction."""
+    return identify(
+        without_friction(table.scene),
+        table.rows,
+        table.grid,
+        loads=(table.new_load,),
+        fit=tables.fit,
+        realisations=tables.realisations,
+        tolerances=tables.tolerances,
+        design=False,
+    )
+
+
 def summary(tables: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    """Return coverages by number and kind, and whether the warning stands where it should.
+    """Return coverages by number, kind, grid and error, and whether warnings stand where they should.
 
     The warning follows from the width of tau's interval. ``unwarned_tau_error``, the largest error of tau
-    among tables without a warning, is independent of it.
+    among tables without a warning, is independent of it. ``bias`` is the mean error in standard
+    uncertainties.
     """
     rows = list(tables)
-    solved = [row for row in rows if "failure" not in row]
+    solved = [row for row in rows if "tau" in row]
     names = ["tau", "beta", "mu"] + ["further"] * any("further" in row for row in solved)
-    kinds = sorted({row["kind"] for row in solved})
 
     def coverage(chosen: Sequence[Mapping[str, Any]]) -> dict[str, float]:
         return {name: sum(row[name] for row in chosen) / len(chosen) if chosen else 0.0 for name in names}
 
+    def by(key: str) -> dict[str, dict[str, float]]:
+        groups = sorted({row[key] for row in solved})
+        return {str(group): coverage([row for row in solved if row[key] == group]) for group in groups}
+
     half_widths = [(row["tau_half_width"], row["warned"]) for row in solved]
     widths = [(math.inf if width is None else width, warned) for width, warned in half_widths]
     unwarned = [abs(row["tau_error"]) for row in solved if not row["warned"]]
+    wrong = [row for row in solved if row["error"] in ("outlier", "unit slip")]
     return {
         "twins": len(rows),
-        "failures": len(rows) - len(solved),
+        "failures": sum("failure" in row for row in rows),
+        "refused": sum("refused" in row for row in rows),
         "coverage": coverage(solved),
-        "by_kind": {kind: coverage([row for row in solved if row["kind"] == kind]) for kind in kinds},
+        "by_kind": by("kind"),
+        "by_grid": by("grid"),
+        "by_error": by("error"),
+        "bias": {name: float(np.mean([row[f"{name}_deviation"] for row in solved])) for name in names[:2]},
+        "with_wrong_row": len(wrong),
+        "wrong_row_named": sum(row["named"] for row in wrong),
+        "rows_named_wrongly": sum(row["named_wrongly"] for row in solved),
+        "rows_dropped_wrongly": sum(row["dropped"] is False for row in solved),
         "wide": sum(width > WIDE for width, _ in widths),
         "wide_without_warning": sum(width > WIDE and not warned for width, warned in widths),
         "narrow": sum(width < NARROW for width, _ in widths),
@@ -140,7 +169,8 @@ def study(
     ``log`` keeps finished fits, a line each: the study goes on where it was.
     """
     seeds = list(tables.seeds if seeds is None else seeds)
-    found = [json.loads(line) for line in log.read_text().splitlines()] if log and log.exists() else []
+    lines = log.read_text(encoding="utf-8").splitlines() if log and log.exists() else []
+    found = [json.loads(each) for each in lines]
     found = [row for row in found if row["seed"] in seeds]
     line = Progress(len(seeds) - len(found))
     for seed in sorted(set(seeds) - {row["seed"] for row in found}):
@@ -149,7 +179,7 @@ def study(
         except ArithmeticError as failure:
             found.append({"seed": seed, "failure": str(failure)})
         if log is not None:
-            with log.open("a") as file:
+            with log.open("a", encoding="utf-8") as file:
                 file.write(json.dumps(jsonable(found[-1])) + "\n")
         line.tick(f"table {seed}")
     line.close()

@@ -1,38 +1,33 @@
 """Synthetic tables of friction: scenes whose tau and beta are known, with noise on mu at several loads.
 
-Surfaces, materials, friction, loads and noise of a table follow from its seed alone. Its friction is solved
-on a grid about 2.7 times finer than the one of the fit, so that the fit has its grid's error as well as the
-noise.
+Surfaces, materials, friction, loads and noise of a table follow from its seed alone. Its friction is the
+corrected mu on 512 elements, extrapolated: a fit on a coarser grid has that grid's error beside the noise.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from functools import lru_cache
 
 import numpy as np
 
 import refimpl as rf
+from refimpl.accuracy.discretisation_error import estimates
 from refimpl.identification import Row
 from refimpl.identification.forward import COVERAGE
 from verification.coverage.drawing import SIDE, Ball, Dice
 
-KINDS = ("ball", "rough ball", "capped ball", "capped rough ball", "rough planes")
+KINDS = "rough ball", "capped rough ball", "self-affine ball", "rough planes"
+ERRORS = "noise", "drift", "outlier", "unit slip", "noise"
+GRIDS = 64, 128, 256  # elements along a side, of the fits of a drawn table
+DRIFT = 1.0  # standard uncertainties from the first row to the last, upwards or downwards
+OUTLIER = 8.0, 15.0  # standard uncertainties, least and most
+SLIP = 1000.0  # kN in place of N, in a load or a friction force
 SHARP_NOISE = 0.005
 ROUGHNESS_TOLERANCE = 0.3  # relative half-width (95 %) of a measured rms height
-
-
-class Grids(NamedTuple):
-    """Elements along a side: of the fit, and of the true friction."""
-
-    fit: int
-    true: int
-
-
-DRAWN, FINER = Grids(48, 128), Grids(64, 192)
-SHARP = Grids(192, 512)
-"""The contact under the smallest load is a tenth of that under the largest one."""
+SHARP_GRID, FINER_GRID = 192, 64  # where the contact at the least load is a tenth as wide as at the largest
+TRUE_GRIDS = 256, 512
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +35,7 @@ class SyntheticTable:
     """A scene with its true friction, rows with noise, a new load (N) and its true mu; the grid of a fit.
 
     ``further`` is the true value of a parameter that is fitted too: then the scene's is a first guess.
+    ``error`` is one of `ERRORS`, ``wrong`` the index of the row that it changed.
     """
 
     kind: str
@@ -49,6 +45,8 @@ class SyntheticTable:
     new_mu: float
     noise: float
     grid: int
+    error: str = "noise"
+    wrong: int | None = None
     further: float | None = None
 
 
@@ -84,7 +82,7 @@ class _Draw(Dice):
         )
 
     def table(
-        self, kind: str, scene: rf.Scene, span: float, count: int, noise: float, most: float, grids: Grids
+        self, kind: str, scene: rf.Scene, span: float, count: int, noise: float, most: float, grid: int
     ) -> SyntheticTable:
         """Friction at loads from the scene's over ``span`` up to it, and at a new one up to ``most`` of it.
 
@@ -94,34 +92,65 @@ class _Draw(Dice):
         new_load = scene.load * self.log(1 / span, most)
         rows = []
         for load in loads:
-            mu = true_friction(scene, load, grids.true)
+            mu = true_friction(scene, load)
             u = noise * mu
             rows.append(Row(load, max(mu + u * float(self.rng.standard_normal()), 0.0), u))
-        new_mu = true_friction(scene, new_load, grids.true)
-        return SyntheticTable(kind, scene, tuple(rows), new_load, new_mu, noise, grids.fit)
+        return SyntheticTable(kind, scene, tuple(rows), new_load, true_friction(scene, new_load), noise, grid)
+
+    def erroneous(self, table: SyntheticTable, error: str) -> SyntheticTable:
+        """Return a table with one of `ERRORS` beside its noise; a drift is in the order of loads."""
+        rows, sign = list(table.rows), float(self.rng.choice([-1, 1]))
+        wrong, size = int(self.rng.integers(len(rows))), self.log(*OUTLIER)
+        if error == "drift":
+            steps = DRIFT * sign * np.linspace(-0.5, 0.5, len(rows))
+            rows = [replace(row, mu=row.mu + step * row.u_mu) for row, step in zip(rows, steps, strict=True)]
+        elif error == "outlier":
+            row = rows[wrong]
+            rows[wrong] = replace(row, mu=max(row.mu + sign * size * row.u_mu, 0.0))
+        elif error == "unit slip":
+            row = rows[wrong]
+            rows[wrong] = (
+                replace(row, load=row.load / SLIP)
+                if sign > 0
+                else replace(row, mu=row.mu / SLIP, u_mu=row.u_mu / SLIP)
+            )
+        found = wrong if error in ("outlier", "unit slip") else None
+        return replace(table, rows=tuple(rows), error=error, wrong=found)
 
 
 def drawn_table(seed: int) -> SyntheticTable:
-    """Return the table of a seed: 3 to 12 loads over a factor of 2 to 40, noise of 0.5 to 5 %."""
-    draw, kind = _Draw(42, seed), KINDS[seed % len(KINDS)]
-    rough: rf.Surface = rf.Flat()
+    """Return a table of six to eight loads over a factor of 5 to 50, noise of 0.5 to 3 %.
+
+    Neighbouring seeds share a table and differ in the grid of the fit.
+    """
+    return replace(_table_of_grids(seed // len(GRIDS)), grid=GRIDS[seed % len(GRIDS)])
+
+
+@lru_cache(maxsize=1)
+def _table_of_grids(number: int) -> SyntheticTable:
+    draw, kind = _Draw(46, number), KINDS[number % len(KINDS)]
     shape: rf.Surface = rf.Flat()
     if kind == "rough planes":
         modulus = draw.materials()
         length, slope = SIDE * draw.log(0.06, 0.12), draw.log(0.01, 0.05)
-        rough = rf.GaussianRoughness(slope * length, length, 2 * seed)
+        rough: rf.Surface = rf.GaussianRoughness(slope * length, length, 2 * number)
         pressure = 0.3 * modulus * slope
-        load = 0.1 * pressure * SIDE**2
+        load = 0.2 * pressure * SIDE**2
     else:
         ball = draw.ball(0.2, 0.35)
         load, pressure, shape = ball.load, ball.pressure, rf.Sphere(ball.R)
-        if "rough" in kind:
-            rms = ball.approach * draw.log(0.02, 0.2)
-            rough = rf.GaussianRoughness(rms, SIDE * draw.log(0.1, 0.3), 2 * seed)
+        rms, length = ball.approach * draw.log(0.02, 0.2), SIDE * draw.log(0.1, 0.3)
+        rough = rf.GaussianRoughness(rms, length, 2 * number)
+        if kind == "self-affine ball":
+            cuts = {"long_cut": length, "roll_off": length, "short_cut": SIDE / draw.log(8, 32)}
+            rough = rf.SelfAffineRoughness(
+                hurst=float(draw.rng.uniform(0.6, 0.9)), rms=0.5 * rms, seed=2 * number, **cuts
+            )
     hardness = pressure * draw.log(0.8, 2.0) if kind.startswith("capped") else None
-    scene = draw.scene(shape, rough, hardness, draw.friction(pressure, 0.01, 0.3), load)
-    count, span, noise = int(draw.rng.integers(3, 13)), draw.log(2, 40), draw.log(0.005, 0.05)
-    return draw.table(kind, scene, span, count, noise, 1.2, DRAWN)
+    scene = draw.scene(shape, rough, hardness, draw.friction(pressure, 0.03, 0.3), load)
+    count, span, noise = int(draw.rng.integers(6, 9)), draw.log(5, 50), draw.log(0.005, 0.03)
+    found = draw.table(kind, scene, span, count, noise, 1.2, GRIDS[-1])
+    return draw.erroneous(found, ERRORS[number // len(KINDS) % len(ERRORS)])
 
 
 def sharp_table(seed: int) -> SyntheticTable:
@@ -135,7 +164,7 @@ def sharp_table(seed: int) -> SyntheticTable:
     hardness = ball.pressure * draw.log(1.2, 2.0) if kind.startswith("capped") else None
     scene = draw.scene(rf.Sphere(ball.R), rough, hardness, draw.friction(ball.pressure, 0.03, 0.2), ball.load)
     span, count = draw.log(100, 1000), int(draw.rng.integers(10, 13))
-    return draw.table(kind, scene, span, count, SHARP_NOISE, 1.0, SHARP)
+    return draw.table(kind, scene, span, count, SHARP_NOISE, 1.0, SHARP_GRID)
 
 
 def yielding_table(seed: int) -> SyntheticTable:
@@ -151,7 +180,7 @@ def yielding_table(seed: int) -> SyntheticTable:
     hardness = ball.pressure * draw.log(0.6, 1.0)
     scene = draw.scene(rf.Sphere(ball.R), rough, hardness, draw.friction(ball.pressure, 0.05, 0.2), ball.load)
     span, count, noise = draw.log(30, 200), int(draw.rng.integers(7, 13)), draw.log(0.003, 0.01)
-    found = draw.table(kind, scene, span, count, noise, 1.1, FINER)
+    found = draw.table(kind, scene, span, count, noise, 1.1, FINER_GRID)
     guess = replace(scene.lower.material, hardness=hardness * draw.log(0.7, 1.4))
     return replace(found, scene=replace(scene, lower=rf.Body(guess, rough)), further=hardness)
 
@@ -169,18 +198,24 @@ def ensemble_table(seed: int) -> SyntheticTable:
     rough = rf.GaussianRoughness(rms, length, 2 * seed)
     scene = draw.scene(rf.Sphere(ball.R), rough, None, draw.friction(ball.pressure, 0.05, 0.2), ball.load)
     span, count, noise = draw.log(100, 300), int(draw.rng.integers(8, 13)), draw.log(0.005, 0.02)
-    found = draw.table("rough ball, drawn anew", scene, span, count, noise, 1.1, FINER)
+    found = draw.table("rough ball, drawn anew", scene, span, count, noise, 1.1, FINER_GRID)
     error = ROUGHNESS_TOLERANCE / COVERAGE * float(draw.rng.standard_normal())
     stated = rf.GaussianRoughness(rms * math.exp(error), length, 2 * seed + 1)
     return replace(found, scene=replace(scene, lower=rf.Body(scene.lower.material, stated)))
 
 
-def true_friction(scene: rf.Scene, load: float, grid: int) -> float:
-    """Return the corrected mu on a fine grid. Raises ArithmeticError where the solve does not converge."""
-    solution = rf.solve(replace(scene, load=load), grid)
-    if not solution.converged:
-        raise ArithmeticError(f"the solve at {load:.4g} N ended as {solution.status.value}")
-    return float(solution.friction_coefficient_corrected)
+def true_friction(scene: rf.Scene, load: float) -> float:
+    """Return the corrected mu, extrapolated from `TRUE_GRIDS`.
+
+    Raises ArithmeticError where a solve does not converge.
+    """
+    features = []
+    for grid in TRUE_GRIDS:
+        solution = rf.solve(replace(scene, load=load), grid)
+        if not solution.converged:
+            raise ArithmeticError(f"the solve at {load:.4g} N ended as {solution.status.value}")
+        features.append(solution.features)
+    return estimates(features)["friction_coefficient_corrected"].value
 
 
 def without_friction(scene: rf.Scene) -> rf.Scene:

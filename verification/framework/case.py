@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from inspect import unwrap
 from types import CodeType
+from typing import Any
 
 import numpy as np
 
@@ -281,7 +282,7 @@ def readable(text: str) -> str:
     return text.encode("utf-8", "replace").decode()
 
 
-def _finite(name: str, number: float) -> float:
+def _finite(name: str, number: Any) -> float:
     if isinstance(number, str) or not math.isfinite(number):
         raise ValueError(f"{name} {number!r} is not a finite number")
     return float(number)

@@ -5,21 +5,20 @@ from __future__ import annotations
 import glob
 import json
 import os
+import platform
 import re
+import secrets
 import shutil
-import stat
 import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from filelock import FileLock
-
 from reports.result_files import encoded
 
 _UNUSUAL = re.compile(r"[^\n -~]")
-_SHOWN = 40  # characters of the target's name in that of a temporary file
+_SHOWN = 40  # characters of the names of target and machine in that of a temporary file
 
 
 @contextmanager
@@ -39,8 +38,9 @@ def replacing(path: Path) -> Iterator[Path]:
                 shutil.copyfileobj(source, stream)
         return
     with _temporary(path) as (name, target):
-        yield Path(name)
-        os.chmod(name, _mode(target))
+        yield name
+        with suppress(FileNotFoundError):
+            shutil.copymode(target, name)
         os.replace(name, target)
 
 
@@ -68,45 +68,36 @@ def try_out(path: Path) -> None:
 
 
 @contextmanager
-def _temporary(path: Path) -> Iterator[tuple[str, Path]]:
+def _temporary(path: Path) -> Iterator[tuple[Path, Path]]:
     """The name of a new file, and the file that a link leads to, beside which it is.
 
-    It has the suffix of the path that was given, is locked while it is written and gone afterwards.
+    It has the suffix of the path that was given, names its writer, and is gone afterwards.
     """
     target = Path(os.path.realpath(path))
-    prefix = f".{target.name[:_SHOWN]}."
-    handle, name = tempfile.mkstemp(dir=target.parent, prefix=prefix, suffix=path.suffix)
-    os.close(handle)
+    begin = f".{target.name[:_SHOWN]}.{platform.node()[:_SHOWN]}-"
+    _remove_left(target.parent, begin, path.suffix)
+    name = target.with_name(f"{begin}{os.getpid()}-{secrets.token_hex(4)}{path.suffix}")
     try:
-        with FileLock(name):
-            _remove_left(target.parent, prefix, path.suffix)
-            yield name, target
+        name.open("xb").close()
+        yield name, target
     finally:
-        with suppress(FileNotFoundError):  # it is at its place
-            os.unlink(name)
+        name.unlink(missing_ok=True)  # it may be at its place
 
 
-def _remove_left(folder: Path, prefix: str, suffix: str) -> None:
-    """Remove temporary files whose writers are gone: nobody locks them."""
-    for left in folder.glob(f"{glob.escape(prefix)}????????{glob.escape(suffix)}"):
-        with suppress(OSError), FileLock(left, timeout=0):
-            os.unlink(left)
+def _remove_left(folder: Path, begin: str, suffix: str) -> None:
+    """Remove temporary files of this machine whose writers are gone."""
+    for left in folder.glob(f"{glob.escape(begin)}*-????????{glob.escape(suffix)}"):
+        import psutil
 
-
-def _mode(path: Path) -> int:
-    """The mode of the file at `path`, or that of a file made there now."""
-    try:
-        return stat.S_IMODE(os.stat(path).st_mode)
-    except FileNotFoundError:
-        umask = os.umask(0o077)  # umask is only returned by setting it
-        os.umask(umask)
-        return 0o666 & ~umask
+        writer = left.name.removeprefix(begin).partition("-")[0]
+        if writer.isdecimal() and not psutil.pid_exists(int(writer)):
+            left.unlink(missing_ok=True)
 
 
 def write_text(text: str, path: Path) -> None:
     """Write a UTF-8 text file in one step."""
     with replacing(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
+        temporary.write_text(text, encoding="utf-8", newline="\n")
 
 
 def to_json(document: object, *, ascii_only: bool = False) -> str:
@@ -128,6 +119,12 @@ def write_result(document: object, path: Path) -> None:
         temporary.write_bytes(content)
 
 
+def rewrite_line(text: str) -> None:
+    """Replace the last line of stderr, within 78 columns: by spaces, as some consoles obey no escapes."""
+    sys.stderr.write(f"\r{text[:78]:<78}" if text else f"\r{'':<78}\r")
+    sys.stderr.flush()
+
+
 class Progress:
     """One line on stderr, rewritten at each step, and nothing at all when stderr is no terminal."""
 
@@ -142,10 +139,9 @@ class Progress:
     def show(self, text: str) -> None:
         """Show a text beside the count, such as the step that begins."""
         if self._shown:
-            sys.stderr.write("\r\x1b[K" + f"[{self.done}/{self.total}] {text}"[:78])
-            sys.stderr.flush()
+            rewrite_line(f"[{self.done}/{self.total}] {text}")
 
     def close(self) -> None:
         """Clear the line."""
         if self._shown:
-            sys.stderr.write("\r\x1b[K")
+            rewrite_line("")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import datetime
-import os
 import platform
 import re
 import shlex
@@ -56,8 +55,9 @@ def is_known(commit: str) -> bool:
 
 def machine() -> dict[str, str | int | None]:
     """Processor model, cores this process may use, and platform."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    return {"cores": cores, "processor": _processor(), "platform": platform.platform()}
+    from refimpl.operating_system import cores, processor_name  # here and not above: --help is quick
+
+    return {"cores": cores(), "processor": processor_name(), "platform": platform.platform()}
 
 
 def command() -> str:
@@ -92,17 +92,7 @@ def _git(root: Path, *arguments: str) -> str | None:
     """Output of a git command, which leaves no lock behind; None when there is no git or no repository."""
     try:
         asked = ["git", "--no-optional-locks", "-C", str(root), *arguments]
-        done = subprocess.run(asked, capture_output=True, text=True, check=True)
+        done = subprocess.run(asked, capture_output=True, encoding="utf-8", check=True)
     except (OSError, subprocess.CalledProcessError):
         return None
     return done.stdout.strip()
-
-
-def _processor() -> str:
-    """Model name; Linux keeps it in /proc/cpuinfo, where `platform` does not look."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        return platform.processor()
-    models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    return models[0] if models else platform.processor()

@@ -6,15 +6,14 @@ import importlib
 import itertools
 import multiprocessing
 import queue
-import signal
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from multiprocessing.process import BaseProcess
 
+from refimpl.operating_system import interrupts_blocked
 from verification.framework import registry
 from verification.framework.case import Case, Result, Status
 from verification.framework.threads import one_thread
@@ -86,16 +85,6 @@ def _drain(lines: queue.SimpleQueue[list[Case]], stopped: threading.Event) -> It
             if stopped.is_set():
                 return
             yield case
-
-
-@contextmanager
-def interrupts_blocked() -> Iterator[None]:
-    """Processes started in the block take no interrupts: one sent to the whole group is for this process."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def kill_workers(others: set[BaseProcess]) -> None:

@@ -25,11 +25,9 @@ import json
 import os
 import shlex
 import shutil
-import signal
 import subprocess
 import tempfile
 import zipfile
-from contextlib import suppress
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import BinaryIO
@@ -38,6 +36,7 @@ import numpy as np
 
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
+from refimpl.operating_system import kill_group, words_of
 from verification.solver_suite.process import exit_text
 from verification.solver_suite.protocol import NUMBERS, Abilities, Answer, BadAnswer, ContactProblem, Coupling
 
@@ -77,7 +76,7 @@ class Command:
         Raises `InputError` also where its first word is no program.
         """
         try:
-            words = tuple(shlex.split(line))
+            words = tuple(words_of(line))
         except ValueError as unbalanced:
             raise InputError("--exec", line, f"a command ({unbalanced})") from unbalanced
         if words and shutil.which(words[0]) is None:
@@ -95,7 +94,7 @@ class Command:
 
     def __call__(self, problem: ContactProblem) -> Answer:
         """Run the program on one problem. Raises `BadAnswer` for all but a readable claim of success."""
-        with tempfile.TemporaryDirectory(prefix="contact-") as name:
+        with tempfile.TemporaryDirectory(prefix="contact-", ignore_cleanup_errors=True) as name:
             directory = Path(name)
             write_problem(problem, directory)
             self._run(directory)
@@ -119,8 +118,7 @@ class Command:
             except subprocess.TimeoutExpired as late:
                 raise BadAnswer(f"no answer within {self.timeout:g} s") from late
             finally:
-                with suppress(ProcessLookupError):  # processes left of its group
-                    os.killpg(process.pid, signal.SIGKILL)
+                kill_group(process.pid)
                 process.wait()
             if status:
                 raise BadAnswer(f"{exit_text(status)}: {_last_line(output)}")
@@ -182,7 +180,7 @@ def read_answer(directory: Path) -> Answer:
 def _read_table(path: Path) -> Array:
     """Numbers between commas; ValueError says which line has something else, or another number of them."""
     rows: list[list[float]] = []
-    for number, line in enumerate(path.read_text().splitlines(), start=1):
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
         if not line:
             continue
         rows.append([_number(cell, number, k) for k, cell in enumerate(line.split(","), start=1)])

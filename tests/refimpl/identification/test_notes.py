@@ -18,7 +18,7 @@ from refimpl.identification.notes import notes
 
 SCENE = rf.read_scene("hertz")
 LOADS, SIZE = (1.0, 2.0, 5.0, 10.0, 20.0), math.log(2.0)
-NONE = Response((0.0, 0.0), 0.0, (1.0, 1.0), 0.0, 0.0, {}, 3e-9, 0.0, 0.0, (1e6,), (1e-6,), 1, ())
+NONE = Response((0.0, 0.0), 0.0, (1.0, 1.0), 0.0, 0.0, 0.0, {}, 0.1, 0.0, 0.0, (1e6,), (1e-6,), 1, ())
 
 
 @pytest.fixture(scope="module")
@@ -86,6 +86,15 @@ SAID: list[tuple[dict[str, Any], str]] = [
     ({"fit": {"limited": True, "nonlinearity": 0.4}}, f"{SETTLED} 0.4 standard"),
     ({"chi_square": 9.25, "probability": 0.004}, "square 9.25 of 2 degrees of freedom has probability 0.004"),
     ({"deleted": (3, -3.14, -3)}, "row 2 (2 N) is off by -3.1 standard uncertainties from the fit to"),
+    (
+        {"deleted": (6, 0, 0), "fit": {"dropped": 0}},
+        "row 1 (1 N) is off by +6.0 standard uncertainties from",
+    ),
+    ({"responses": [{"contact_fraction": x} for x in (0.002, 0.0049)]}, "less than 0.5 % of the domain"),
+    (
+        {"responses": [{"border": 0.021}, {"contact_fraction": 0.991}]},
+        "fills the domain or reaches its border",
+    ),
     ({"responses": [{"numerical": 1, "contact_edge": 1}, {"contact_edge": 1}]}, "uncertainty in 2 rows"),
     ({"responses": [{}, {"border": 0.021}]}, "contact reaches the domain's border"),
     ({"responses": [{"plastic": 0.25}, {}]}, "up to 25 % of the contact is at the hardness"),

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-import resource
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
+import psutil
 import pytest
 
 import refimpl as rf
+from refimpl import operating_system as module
 from refimpl.grid import Grid
 from refimpl.model.problem import Terms
-from refimpl.planning import free_memory as module
+from refimpl.operating_system import free_memory
 from refimpl.planning import plan, term_effects, terms
 from refimpl.planning.expected_contact import expected_contact, solved_contact
-from refimpl.planning.free_memory import free_memory
 from refimpl.planning.plan import Plan, make_plan, memory_of
 from refimpl.planning.term_effects import Scales
 from refimpl.scene.discretise import discretise
@@ -249,11 +250,10 @@ GB = 2**30
 def system(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A machine with 8 GB free, without groups and limits."""
     (tmp_path / "proc/self").mkdir(parents=True)
-    (tmp_path / "proc/meminfo").write_text(f"MemFree: 1 kB\nMemAvailable: {8 * GB // 1024} kB\n")
     monkeypatch.setattr(module, "PROC", tmp_path / "proc")
     monkeypatch.setattr(module, "GROUPS", tmp_path / "cgroup")
-    unlimited = (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
-    monkeypatch.setattr(resource, "getrlimit", lambda which: unlimited)
+    monkeypatch.setattr(psutil, "virtual_memory", lambda: SimpleNamespace(available=8 * GB))
+    monkeypatch.setattr(psutil, "Process", lambda: SimpleNamespace())
     return tmp_path
 
 
@@ -279,14 +279,14 @@ def test_groups_above_it_count_and_dropped_pages_are_free(system: Path) -> None:
     assert free_memory() == 2 * GB + GB // 2
 
 
-@pytest.mark.parametrize(
-    ("which", "left"), [(resource.RLIMIT_AS, 2 * GB), (resource.RLIMIT_DATA, 5 * GB // 2)]
-)
-def test_limits_of_the_process(which: int, left: int, system: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.skipif(not hasattr(psutil, "RLIMIT_AS"), reason="psutil has no limits here")
+@pytest.mark.parametrize(("which", "left"), [("RLIMIT_AS", 2 * GB), ("RLIMIT_DATA", 5 * GB // 2)])
+def test_limits_of_the_process(which: str, left: int, system: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of the address space 1 GB is used, of the data segment half of that."""
-    page = resource.getpagesize()
-    (system / "proc/self/statm").write_text(f"{GB // page} 0 0 0 0 {GB // (2 * page)} 0\n")
-    limits = {which: (3 * GB, 3 * GB)}
-    unlimited = (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
-    monkeypatch.setattr(resource, "getrlimit", lambda asked: limits.get(asked, unlimited))
+    limits = {getattr(psutil, which): (3 * GB, 3 * GB)}
+    process = SimpleNamespace(
+        memory_info=lambda: SimpleNamespace(vms=GB, data=GB // 2),
+        rlimit=lambda asked: limits.get(asked, (psutil.RLIM_INFINITY, psutil.RLIM_INFINITY)),
+    )
+    monkeypatch.setattr(psutil, "Process", lambda: process)
     assert free_memory() == left

@@ -178,9 +178,9 @@ class Counted(rf.Sphere):
     sampled: list[int] = field(default_factory=list)
     kind: ClassVar[str] = "counted"
 
-    def sample(self, grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> Array:
+    def heights_on(self, grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> Array:
         self.sampled.append(grid.shape[0])
-        return super().sample(grid, offset)
+        return super().heights_on(grid, offset)
 
     def notes(self, grid: Grid) -> tuple[str, ...]:
         return ("counted by hand",)

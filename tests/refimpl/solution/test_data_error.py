@@ -31,7 +31,7 @@ class Wave(Surface):
     data: float | None = None
     kind: ClassVar[str] = "wave"
 
-    def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+    def heights_on(self, grid: Grid, offset: tuple[float, float]) -> Array:
         along = ((grid.x + offset[0])[:, None], (grid.y + offset[1])[None, :])[self.axis]
         return np.broadcast_to(self.amplitude * np.cos(2 * np.pi * along / self.wavelength), grid.shape)
 

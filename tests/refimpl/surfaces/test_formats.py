@@ -90,13 +90,6 @@ def test_a_format_without_missing_points_comes_back(
     assert reading.orientation == IMAGE
 
 
-def test_the_map_is_like_none_of_its_mirror_images() -> None:
-    images = [z for turned in (COMPLETE, COMPLETE[::-1, ::-1]) for z in (turned, turned[:, ::-1])]
-    for k, z in enumerate(images):
-        for other in images[k + 1 :]:
-            assert np.abs(z - other).max() > 1e-7
-
-
 @pytest.mark.parametrize("row", FORMATS, ids=[row[0] for row in FORMATS])
 def test_unit_and_pixel_are_overridden_with_a_note(tmp_path: Path, row: tuple[Any, ...]) -> None:
     name, writer, given, *_ = row

@@ -13,6 +13,8 @@ from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import NamedTuple
 
+import pytest
+
 from verification.sweep.study import Study
 from verification.sweep.study_file import study_from_dict
 
@@ -33,6 +35,8 @@ def forked(act: Callable[[], int], *, before: Callable[[], object] = lambda: Non
     lost there. Hypothesis has one; a child has none. The tracker of semaphores is this process's: one of the
     child's own reports the semaphores of killed workers on the child's standard error, at random.
     """
+    if not hasattr(os, "fork"):
+        pytest.skip("limits and signals of POSIX")
     resource_tracker.ensure_running()
     with tempfile.TemporaryFile() as err:
         child = os.fork()

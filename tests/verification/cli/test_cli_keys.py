@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -12,9 +13,9 @@ from refimpl.scene import key_texts, keys
 from refimpl.scene.keys import REQUIRED, SAMPLES, allowed_by, sample_scene, scene_keys
 from refimpl.scene.scene_file import _OPTIONAL_KEYS, _SCENE_KEYS, scene_from_dict
 from refimpl.surfaces import surface_from_dict
+from refimpl.surfaces.from_table import KINDS
 from tests.documents import ROOT
 from verification.cli import main
-from verification.cli.keys import page
 from verification.sweep.keys import study_keys
 from verification.sweep.study_file import KEYS, SOLVE_KEYS, study_from_dict
 
@@ -22,10 +23,19 @@ TABLES = scene_keys()
 PAGE = ROOT / "docs" / "scene-file.md"
 
 
-def test_the_committed_page_is_the_codes(tmp_path: Path) -> None:
-    made = tmp_path / "page.md"
+def test_the_tables_of_the_committed_page_are_the_codes(tmp_path: Path) -> None:
+    committed, made = PAGE.read_text(encoding="utf-8"), tmp_path / "page.md"
+    made.write_text(re.sub(r"(?<= -->\n\n)(\|.*\n)+", "", committed), encoding="utf-8")
+    assert "|---" not in made.read_text(encoding="utf-8")
     assert main(["keys", "--markdown", str(made)]) == 0
-    assert made.read_text(encoding="utf-8") == PAGE.read_text(encoding="utf-8")
+    assert made.read_text(encoding="utf-8") == committed
+    assert committed.count("\n|---") == sum(map(bool, [*TABLES.values(), *study_keys().values()]))
+    assert [kind for kind in KINDS if f'`kind = "{kind}"`' not in committed] == []
+
+
+def test_a_page_that_is_not_there_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["keys", "--markdown", str(tmp_path / "none.md")]) == 2
+    assert "a page with places for tables" in capsys.readouterr().err
 
 
 def test_all_keys_that_a_file_may_have_are_there() -> None:
@@ -97,6 +107,5 @@ def test_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["keys", "tau", "--json", "-"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert [key["unit"] for key in document["friction"] if key["name"] == "tau"] == ["Pa"]
-    assert main(["keys", "--markdown", "-"]) == 0
-    assert capsys.readouterr().out == page()
-    assert all(f"| `{key.name}` |" in page() for table in TABLES.values() for key in table)
+    page = PAGE.read_text(encoding="utf-8")
+    assert all(f"| `{key.name}` |" in page for table in TABLES.values() for key in table)

@@ -101,6 +101,7 @@ MADE_UP: Any = Made(
     rows=(Row(8, 0.33, 0.01), Row(5, 0.36, 0.02)), is_identified=False, covariance=np.zeros((3, 3)),
     shares={"measurement": (3e5, 0.02, 1e7)}, method="ellipse", factor=2e-8, solves=11, passes=3,
     combination=Interval(0.24, 0.23, 0.26), residuals=(3, -2), deleted=(4, -2.5), degrees=1, chi_square=13,
+    outliers=(0,), fitted=Made(dropped=0),
     predictions=[Prediction(P, Interval(m, m - 0.05, m + 0.1)) for P, m in ((8, 0.3), (5, 0.4), (40, 0.5))],
     probability=0.0, laws=(Law("Coulomb", {}, 14, math.inf, 7),), warnings=("vague",),
     proposal=Proposal((2, 90), (0.25, math.inf)),
@@ -117,6 +118,7 @@ def test_a_fit_as_a_table_and_as_json() -> None:
     assert (found["tau"], found["beta"]["high"]) == ({"value": 2e6, "low": 1e6, "high": 4e6}, None)
     assert found["shares"] == {"measurement": {"tau": 3e5, "beta": 0.02, "hardness": 1e7}}
     assert (found["residuals"], found["deleted_residuals"]) == ([3, -2], [4, -2.5])
+    assert found["outliers"] == [{"row": 1, "load": 8, "deviation": 4, "dropped": True}]
     assert (found["degrees_of_freedom"], found["solves"], found["passes"]) == (1, 11, 3)
     assert (found["laws"][0]["aicc"], found["laws"][0]["bic"]) == (None, 7)
     assert found["further_loads"] == {"loads": [2, 90], "tau": 0.25, "beta": None}

@@ -9,7 +9,6 @@ from __future__ import annotations
 import errno
 import json
 import os
-import resource
 import signal
 import subprocess
 import sys
@@ -26,6 +25,7 @@ from tests.verification.cli.commands import run
 from verification.cli import main, solve
 from verification.framework import files
 
+resource = pytest.importorskip("resource", reason="signals and limits of POSIX")
 START = (
     "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
     "from verification.start import run; raise SystemExit(run())"
@@ -146,7 +146,7 @@ def test_a_folder_that_refuses(
         raise OSError(errno.EROFS, os.strerror(errno.EROFS), str(tmp_path))
 
     def turns(*_: object, **__: object) -> None:  # read-only once the solve has begun
-        monkeypatch.setattr(files.tempfile, "mkstemp", refuses)
+        monkeypatch.setattr(files, "_remove_left", refuses)
 
     monkeypatch.setattr(solve, "check_suffix", turns)
     late = run(f"solve hertz --grid 8 --json {tmp_path}/s.json")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
 from typing import Any
 
@@ -77,11 +76,7 @@ def test_the_self_test_is_a_pattern_of_cases() -> None:
 
 
 def test_every_committed_file_has_its_command() -> None:
-    """But those whose study is retired: their row says so, and names no command."""
-    page = (results.FOLDER / "README.md").read_text(encoding="utf-8")
-    retired = re.findall(r"^\| `(\w+)\.json` \| `[\w.]+` of its commit, retired since \|", page, flags=re.M)
-    named = [*results.commands(), *retired]
-    assert sorted(named) == sorted(name_of(path) for path in result_paths(results.FOLDER))
+    assert sorted(results.commands()) == sorted(name_of(path) for path in result_paths(results.FOLDER))
 
 
 @pytest.mark.parametrize(

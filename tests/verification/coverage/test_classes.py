@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from types import SimpleNamespace as Made
 from typing import Any
@@ -15,11 +16,11 @@ from verification.coverage.class_costs import SIZES, costs
 
 
 def test_references_known_values() -> None:
-    """The edge's 0.79 of 1e-8; straight ones, 1e-9, have 0.21 in the place of 0.79 (pi - 1 + ln 2) / 24."""
+    """The mean excess, 8e-9, and its bounds: 0.12 of the edge's 1e-8, and half of straight edges, 4 faces."""
     straight, grid = Made(faces=10, squares=16), Made(element_area=1e-10)
-    own = {"straight": straight, "grid": grid, "edge": 1e-8, "dmu_dA": 1e5, "peak": Made(height=6)}
+    own = {"straight": straight, "grid": grid, "edge": 1e-8, "excess": 8e-9, "dmu_dA": 1e5, "peak": Made(height=6)}
     numbers = dict(zip(classes.NUMBERS, (0.3, 0.4, 3e-6, 2e-6, 5, 7), strict=True))
-    area, bound = 3e-6 - 7.9e-9 - 0.116690e-9, 0.12e-8 + 0.5 * 4 * 1e-10
+    area, bound = 3e-6 - 8e-9, math.hypot(0.12e-8, 0.5 * 4 * 1e-10)
     mu = 0.4 + 1e5 * (area - 3e-6)
     for yields, peak in ((False, 6), (True, 5)):
         bars = {name: {"a": 0.1, "b": 0.2} for name in numbers}

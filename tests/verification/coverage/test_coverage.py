@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +12,9 @@ import pytest
 from refimpl.accuracy.peak import Peak
 from refimpl.accuracy.refinement import FIRST_GRIDS
 from refimpl.model.friction import is_frictionless
-from reports.drawing import svg
-from reports.studies import exhibit
 from tests.verification.coverage.made_up import GRIDS, grid_solve, refinement
 from verification.coverage import document
-from verification.coverage.document import grids_of, reference_check, solves
+from verification.coverage.document import reference_check, solves
 from verification.coverage.judge import Coverage, coverages, reference_change, reference_of, summary
 from verification.coverage.scenes import CLASSES, random_scene
 from verification.coverage.store import NUMBERS, grid_solves, refine, refinements
@@ -163,14 +160,6 @@ def test_the_reference_is_checked_on_one_more_grid(tmp_path: Path, monkeypatch: 
     assert reference_check([6], store)["worst_over_bound"] is None
 
 
-def test_periodic_scenes_end_at_a_coarser_reference() -> None:
-    ends = {kind: grids_of(seed)[-1] for seed, kind in enumerate(CLASSES)}
-    assert {kind for kind, end in ends.items() if end == 512} == {"periodic waves", "periodic rough"}
-    to_256 = (32, 64, 80, 96, 112, 128, 160, 192, 224, 256)
-    assert grids_of(0) == (*to_256, 320, 384, 448, 512, 1024)
-    assert grids_of(list(CLASSES).index("periodic waves")) == (*to_256, 512)
-
-
 def test_the_document_solves_what_is_wanting_and_judges_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -184,53 +173,3 @@ def test_the_document_solves_what_is_wanting_and_judges_it(
         name: [0] if name == "friction_coefficient" else seeds for name in NUMBERS
     }
     assert sum(judged["classes"][kind]["contact_area"]["scenes"] for kind in CLASSES) == 2
-
-
-def test_every_column_of_the_document(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """From a store whose lines stand in no order; some solves of the second scene end oddly."""
-    seeds, path = [75, 76], tmp_path / "s.jsonl"  # no scenes that are checked on one more grid
-    odd = {32: "cycled", 64: "stagnated", 96: "iteration limit"}
-    several = refinement(seed=75) + [
-        grid_solve(M, seed=76, status=odd.get(M, "converged"), worst=M * 1e-9, seconds=0.5, apart=M * 1e-12)
-        for M in GRIDS
-    ]
-    order = np.random.default_rng(3).permutation(len(several))
-    path.write_text("".join(json.dumps(asdict(several[k])) + "\n" for k in order))
-    assert list(refinements(path)) == seeds
-    assert all([one.M for one in found] == list(GRIDS) for found in refinements(path).values())
-    monkeypatch.setattr(document, "grids_of", lambda _: GRIDS)
-    found: dict[str, Any] = document.document([0.03, 0.005], seeds, path)
-    assert found["solves"] == {
-        "count": 14,
-        "seconds": pytest.approx(7 * 0.1 + 7 * 0.5),
-        "worst_residual": pytest.approx(512e-9),
-        "worst_apart": pytest.approx(512e-12),
-        "not_converged": 2,  # a cycled solve is a solution
-    }
-    assert (found["seeds"], found["reference_check"]["seeds"]) == (seeds, [])
-    assert [one["accuracy"] for one in found["accuracies"]] == [0.03, 0.005]
-    for judged in found["accuracies"]:
-        expected = coverages(refinements(path), judged["accuracy"])
-        for number in NUMBERS:
-            own, columns = [v for v in expected if v.number == number], judged["verdicts"][number]
-            assert columns["seed"] == [v.seed for v in own]
-            assert columns["class"] == [random_scene(v.seed).kind for v in own]
-            assert columns["grids"] == [list(v.grids) for v in own]
-            assert columns["grid"] == [max(v.grids) for v in own]
-            for name in ("met", "bar", "error", "reference_bound", "cheapest", "cost"):
-                exact = [getattr(v, name) for v in own]
-                assert columns[name] == [v if v is None else pytest.approx(v, rel=5e-4) for v in exact], name
-            assert judged["numbers"][number] == summary(own)
-            for kind in {random_scene(seed).kind for seed in seeds}:
-                assert judged["classes"][kind][number] == summary(v for v in own if v.kind == kind)
-    assert any(max(grids) > 64 for grids in found["accuracies"][1]["verdicts"]["contact_area"]["grids"])
-
-
-def test_the_report_shows_the_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = tmp_path / "s.jsonl"
-    path.write_text("".join(json.dumps(asdict(one)) + "\n" for one in refinement()))
-    monkeypatch.setattr(document, "grids_of", lambda _: GRIDS)
-    shown = exhibit("coverage", json.loads(json.dumps(document.document([0.02], [3], path), default=str)))
-    assert shown.tables[0].rows[0][:5] == ("mu", 0.02, 1, 100.0, 100.0)
-    ((figure, data),) = shown.figures
-    assert svg(figure, data) is not None

@@ -11,11 +11,20 @@ import pytest
 from refimpl import Scene
 from reports.result_files import committed
 from verification.coverage import synthetic_tables
-from verification.coverage.identification import LEVEL, SETS, TableSet, fitted, study, summary
-from verification.coverage.synthetic_tables import SHARP_NOISE, SyntheticTable, drawn_table, sharp_table
+from verification.coverage.identification import BIAS, LEVEL, SETS, TableSet, fitted, study, summary
+from verification.coverage.synthetic_tables import (
+    ERRORS,
+    GRIDS,
+    SHARP_NOISE,
+    SyntheticTable,
+    drawn_table,
+    sharp_table,
+)
 
 ROW: dict[str, Any] = dict.fromkeys(("tau", "beta", "mu"), True) | {
-    "kind": "ball", "loads": 4, "tau_half_width": 0.1, "tau_error": -0.02, "warned": False, "solves": 9,
+    "kind": "ball", "grid": 64, "error": "noise", "loads": 4, "tau_half_width": 0.1, "tau_error": -0.02,
+    "warned": False, "solves": 9, "tau_deviation": 0.5, "beta_deviation": -0.1, "named": False,
+    "named_wrongly": 0, "dropped": None,
 }  # fmt: skip
 
 
@@ -27,9 +36,10 @@ def test_warnings_are_counted_by_the_width_of_the_interval() -> None:
         ROW | {"tau_half_width": 0.04, "warned": True, "tau_error": 0.01, "solves": 17},
         ROW | {"tau_half_width": 0.02, "tau_error": 0.03},
         {"failure": "the solve at 1 N ended as stagnated"},
+        {"refused": "data: load", "kind": "ball", "grid": 64, "error": "unit slip"},
     ]
     found = summary(rows)
-    assert (found["twins"], found["failures"], found["warned"]) == (6, 1, 2)
+    assert (found["twins"], found["failures"], found["refused"], found["warned"]) == (7, 1, 1, 2)
     assert found["coverage"] == {"tau": 0.8, "beta": 1.0, "mu": 1.0}
     assert (found["wide"], found["wide_without_warning"]) == (2, 1)
     assert (found["narrow"], found["narrow_whole"], found["narrow_with_warning"]) == (2, 1, 1)
@@ -37,11 +47,39 @@ def test_warnings_are_counted_by_the_width_of_the_interval() -> None:
     assert found["most_solves_per_load"] == pytest.approx(4.0)
 
 
-def test_a_table_follows_from_its_seed() -> None:
-    first, again = drawn_table(5000), drawn_table(5000)
-    assert (first.rows, first.new_mu) == (again.rows, again.new_mu)
-    assert 3 <= len(first.rows) <= 12
-    assert 0.005 <= first.noise <= 0.05
+def test_wrong_rows_are_counted_where_they_are_named() -> None:
+    wrong = {"error": "outlier", "grid": 128, "tau_deviation": -0.3}
+    rows = [
+        ROW,
+        ROW | wrong | {"named": True, "dropped": True},
+        ROW | wrong | {"tau": False, "named_wrongly": 2},
+    ]
+    found = summary([*rows, ROW | {"dropped": False}])
+    assert (found["with_wrong_row"], found["wrong_row_named"]) == (2, 1)
+    assert (found["rows_named_wrongly"], found["rows_dropped_wrongly"]) == (2, 1)
+    assert [found["by_grid"][grid]["tau"] for grid in ("64", "128")] == [1.0, 0.5]
+    assert found["by_error"]["outlier"]["tau"] == 0.5
+    assert found["bias"] == {"tau": pytest.approx(0.1), "beta": pytest.approx(-0.1)}
+
+
+def test_a_table_follows_from_its_seed_and_its_error_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three seeds share a table, and the fifth group of a dozen has noise alone again."""
+    no_solve(monkeypatch)
+    synthetic_tables._table_of_grids.cache_clear()
+    tables = [drawn_table(seed) for seed in range(60)]
+    synthetic_tables._table_of_grids.cache_clear()
+    again = drawn_table(0)
+    synthetic_tables._table_of_grids.cache_clear()
+    assert (again.rows, again.grid) == (tables[0].rows, 64)
+    assert tables[1].rows == tables[0].rows != tables[3].rows
+    assert [table.grid for table in tables[:4]] == [64, 128, 256, 64]
+    assert [table.error for table in tables[::12]] == list(ERRORS)
+    for table in tables:
+        assert 6 <= len(table.rows) <= 8
+        assert (table.wrong is None) == (table.error in ("noise", "drift"))
+        if table.wrong is not None:
+            row = table.rows[table.wrong]
+            assert max(abs(row.mu - 0.1) / row.u_mu, table.rows[-1].load / row.load) > 5
 
 
 def no_solve(monkeypatch: pytest.MonkeyPatch) -> list[Scene]:
@@ -62,7 +100,7 @@ def test_sharp_tables_span_two_to_three_decades(monkeypatch: pytest.MonkeyPatch)
 def test_sets_share_no_seed() -> None:
     seeds = [seed for one in SETS.values() for seed in one.seeds]
     assert len(seeds) == len(set(seeds))
-    assert len(SETS["drawn"].seeds) >= 300
+    assert len(SETS["drawn"].seeds) == 60 * len(GRIDS)
 
 
 def test_finished_fits_are_read_from_the_log(tmp_path: Path) -> None:
@@ -98,7 +136,7 @@ def test_a_hardness_to_fit_is_wrong_in_the_scene_and_right_in_the_rows(
 
 
 def test_a_fit_of_a_table_covers_its_truth() -> None:
-    found = fitted(SETS["drawn"], 5009)
+    found = fitted(SETS["drawn"], 300)
     assert (found["tau"], found["beta"], found["mu"], found["warned"]) == (True, True, True, True)
 
 
@@ -110,6 +148,7 @@ def test_committed_intervals_cover_in_92_per_cent_of_all_tables() -> None:
         assert row["twins"] == len(SETS[name].seeds)
         assert min(row["coverage"].values()) >= LEVEL
         assert row["wide_without_warning"] == row["narrow_with_warning"] == row["failures"] == 0
+    assert abs(found["drawn"]["summary"]["bias"]["tau"]) <= BIAS
 
 
 def test_tau_that_is_too_small_is_an_error_too() -> None:

@@ -1,4 +1,4 @@
-"""Random scenes of the study of error bars: every number within the range that its class promises."""
+"""Random scenes of the study of error bars: classes in turn, shares of materials and friction, heights."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Array
-from tests.verification.coverage.draws import Range
 from verification.coverage.drawing import Barrel, Wave, Waves, measured_like
 from verification.coverage.scenes import CLASSES, Drawn, random_scene
 
@@ -21,37 +20,9 @@ DRAWN = {
 ALL = [drawn for several in DRAWN.values() for drawn in several]
 
 
-def modulus(drawn: Drawn) -> float:
-    bodies = drawn.scene.upper, drawn.scene.lower
-    return 1 / sum((1 - body.material.nu**2) / body.material.E for body in bodies)
-
-
 def part(drawn: Drawn, body: str, kind: type) -> Any:
     (found,) = [part for part in drawn.scene.parts(body) if isinstance(part, kind)]
     return found
-
-
-def ball(drawn: Drawn) -> tuple[float, float, float]:
-    """Radius, radius of contact and approach (m) by Hertz: a^3 = 3 P R / (4 E*), a^2 / R.
-
-    A barrel of radii R / k and R k touches as a ball of R does under k times its load.
-    """
-    if drawn.kind == "barrel":
-        barrel = part(drawn, "upper", Barrel)
-        R, load = math.sqrt(barrel.across * barrel.along), drawn.scene.load * math.sqrt(slender(drawn))
-    else:
-        R, load = part(drawn, "upper", rf.Sphere).radius, drawn.scene.load
-    a = (0.75 * load * R / modulus(drawn)) ** (1 / 3)
-    return R, a, a**2 / R
-
-
-def heights(drawn: Drawn) -> Array:
-    return np.asarray(part(drawn, "upper", rf.ArraySurface).data)
-
-
-def slender(drawn: Drawn) -> float:
-    barrel = part(drawn, "upper", Barrel)
-    return float(barrel.along / barrel.across)
 
 
 def wave(drawn: Drawn, body: str = "upper") -> Waves:
@@ -62,59 +33,6 @@ def wave(drawn: Drawn, body: str = "upper") -> Waves:
 def rough(drawn: Drawn, body: str = "upper") -> rf.GaussianRoughness:
     found: rf.GaussianRoughness = part(drawn, body, rf.GaussianRoughness)
     return found
-
-
-def flattened(drawn: Drawn) -> float:
-    """Mean pressure over ``sqrt(2) pi E* g / l``, which flattens a wave of amplitude g (Johnson 1985)."""
-    slope = wave(drawn).amplitude * wave(drawn).numbers[0] / SIDE
-    return drawn.scene.load / SIDE**2 / (math.sqrt(2) * math.pi * modulus(drawn) * slope)
-
-
-def rough_pressure(drawn: Drawn) -> float:
-    """E* times the rms gradient, sqrt(2) sqrt(4.6) rms / l (Pa)."""
-    return modulus(drawn) * math.sqrt(9.2) * rough(drawn).rms / rough(drawn).correlation_length
-
-
-def tau_share(drawn: Drawn) -> float | None:
-    """Tau over the mean pressure, or over 0.4 of the rough planes' pressure."""
-    if "periodic" in drawn.kind:
-        return drawn.scene.friction.tau / (0.4 * rough_pressure(drawn)) or None
-    return drawn.scene.friction.tau * math.pi * ball(drawn)[1] ** 2 / drawn.scene.load or None
-
-
-BALLS = ("smooth ball", "wavy ball", "rough ball", "both rough", "measured-like")
-RANGES = [
-    Range("barrel", "ratio of radii", slender, 1.5, 10),
-    Range("wavy ball", "height", lambda d: wave(d, "lower").amplitude / ball(d)[2], 0.02, 0.5),
-    Range("wavy ball", "phase x", lambda d: wave(d, "lower").phases[0], 0, 2 * math.pi, False),
-    Range("wavy ball", "phase y", lambda d: wave(d, "lower").phases[1], 0, 2 * math.pi, False),
-    Range("measured-like", "rms", lambda d: heights(d).std() / ball(d)[2], 0.01, 0.4),
-    Range("measured-like", "points", lambda d: len(heights(d)), 48, 160, False),
-    Range("periodic waves", "amplitude", lambda d: wave(d).amplitude * wave(d).numbers[0] / SIDE, 1e-4, 1e-2),
-    Range("periodic waves", "load", flattened, 0.02, 0.66),
-    Range("periodic rough", "rms", lambda d: rough(d).rms / SIDE, 1e-4, 3e-3),
-    Range("periodic rough", "length", lambda d: rough(d).correlation_length / SIDE, 0.08, 0.4),
-    Range("periodic rough", "load", lambda d: d.scene.load / SIDE**2 / rough_pressure(d), 0.02, 0.2),
-    Range("all", "beta", lambda d: d.scene.friction.beta or None, 0.01, 0.4),
-    Range("all", "direction", lambda d: d.scene.sliding_direction, 0, 2 * math.pi, False),
-]
-RANGES += [Range(kind, "tau", tau_share, 0.003, 0.3) for kind in (*BALLS, "periodic rough")]
-for kind in (*BALLS, "barrel"):
-    RANGES.append(Range(kind, "a / side", lambda d: ball(d)[1] / SIDE, 0.08, 0.3))
-    RANGES.append(Range(kind, "R / side", lambda d: ball(d)[0] / SIDE, 2, 100))
-ROUGH = ("rough ball", "lower", 0.6), ("both rough", "upper", 0.3), ("both rough", "lower", 0.3)
-for kind, b, most in ROUGH:
-    RANGES.append(Range(kind, f"rms, {b}", lambda d, b=b: rough(d, b).rms / ball(d)[2], 0.01, most))
-    length = Range(kind, f"length, {b}", lambda d, b=b: rough(d, b).correlation_length / SIDE, 0.05, 0.3)
-    RANGES.append(length)
-for b in ("upper", "lower"):
-    RANGES.append(Range("all", f"E, {b}", lambda d, b=b: getattr(d.scene, b).material.E, 2e9, 400e9))
-    RANGES.append(Range("all", f"nu, {b}", lambda d, b=b: getattr(d.scene, b).material.nu, 0.1, 0.49, False))
-
-
-@pytest.mark.parametrize("one", RANGES, ids=lambda one: f"{one.kind}, {one.name}")
-def test_draws_fill_the_range_of_their_class(one: Range) -> None:
-    assert one.filled_by(ALL if one.kind == "all" else DRAWN[one.kind])
 
 
 @pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")

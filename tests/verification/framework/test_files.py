@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-import signal
 import stat
+import subprocess
 import sys
 from pathlib import Path
 
@@ -36,13 +36,11 @@ def test_a_file_is_whole_or_as_it_was(tmp_path: Path) -> None:
 def test_the_next_write_removes_what_a_killed_writer_left(tmp_path: Path) -> None:
     target = tmp_path / "s.json"
     target.write_text("old")
-    child = os.fork()
-    if child == 0:
-        with files.replacing(target) as temporary:
-            temporary.write_text("half")
-            os.kill(os.getpid(), signal.SIGKILL)
-    os.waitpid(child, 0)
+    half = "with files.replacing(Path('s.json')) as temporary: temporary.write_text('half'); os._exit(9)"
+    code = f"import os; from pathlib import Path; from verification.framework import files\n{half}"
+    assert subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=False).returncode == 9
     assert target.read_text() == "old"
+    assert len(list(tmp_path.iterdir())) == 2
     files.write_text("new", target)
     assert [path.name for path in tmp_path.iterdir()] == ["s.json"]
 

@@ -18,8 +18,9 @@ from verification.cli import main
 from verification.framework.case import Result
 from verification.solver_suite import isolated, process
 from verification.solver_suite.isolated import Named
-from verification.solver_suite.process import Ended, unwinding
+from verification.solver_suite.process import unwinding
 
+pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="signals and forks of POSIX")
 SLEEPER = "sh -c 'echo $$ > pid; exec sleep 600' "
 SLEEPS = """
 import os, time
@@ -286,26 +287,6 @@ def test_a_run_that_is_ended_takes_the_solver_with_it(
             os.kill(pid, signal.SIGKILL)
         child.kill()
         child.communicate()
-
-
-def test_a_signal_unwinds_once_and_is_then_as_before() -> None:
-    cleaned = []
-
-    def tidying() -> None:
-        try:
-            os.kill(os.getpid(), signal.SIGTERM)
-        finally:
-            os.kill(os.getpid(), signal.SIGHUP)  # while it is tidied up
-            cleaned.append(True)
-
-    def act() -> int:
-        with pytest.raises(Ended, match="15"), unwinding(signal.SIGTERM, signal.SIGHUP):
-            tidying()
-        if cleaned:
-            os.kill(os.getpid(), signal.SIGTERM)
-        return 0
-
-    assert forked(act).status == -signal.SIGTERM
 
 
 def test_an_ignored_signal_stays_so_and_a_fork_gets_it_as_ever() -> None:

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import shutil
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
-from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
 
 from refimpl.grid import Array
 from tests.verification.solver_suite.asked import problem_of
-from verification.cli import export as cli_export
 from verification.cli import main
 from verification.solver_suite import own, reference_solution
 from verification.solver_suite.checks.sliding import FREE, PERIODIC
@@ -25,14 +21,10 @@ from verification.solver_suite.pin_arrays import PinArray
 from verification.solver_suite.protocol import ContactProblem, Coupling
 from verification.solver_suite.reference import agreement, files
 from verification.solver_suite.reference.certified import (
-    APPARENTLY_CONTACT,
-    APPARENTLY_SEPARATED,
     CONTACT,
     SEPARATED,
     Certified,
-    NoBound,
     NotCertified,
-    _codes,
     certified,
 )
 from verification.solver_suite.reference.files import SUMS, checksums
@@ -244,11 +236,6 @@ def test_pressures_beyond_the_bounds_are_found_whatever_the_checksums(copy: Path
     assert found.startswith("pins: pressure differs by")
 
 
-def test_the_citation_names_the_content(folder: Path) -> None:
-    assert f'version: "{files.version_of(folder)}"' in (folder / "CITATION.cff").read_text()
-    assert files.version_of(folder).startswith("sha256:")
-
-
 def test_a_folder_that_holds_something_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "mine.txt").write_text("keep")
     only = ["--only", "contestant/pins"]
@@ -273,45 +260,3 @@ def test_what_is_no_export_is_refused(tmp_path: Path, capsys: pytest.CaptureFixt
     (tmp_path / "index.json").write_text('{"format": "another"}')
     assert agreement.main([str(tmp_path)]) == 2
     assert "an index whose format is" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(("second", "status"), [(NoBound, 0), (NotCertified, 1)])
-def test_only_a_problem_that_could_have_a_proof_fails_an_export(
-    second: type[NotCertified],
-    status: int,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    """Of three problems the first has a bound of 2 Pa below a peak of 8 Pa, the last one of 1 Pa."""
-
-    def certified(problem: str) -> Any:
-        if problem == "b":
-            raise second("why not")
-        bound = {"a": 2.0, "c": 1.0}[problem]
-        return SimpleNamespace(bounds=SimpleNamespace(pressure=bound), pressure=np.array([3.0, 8.0]))
-
-    export = MagicMock()
-    export.return_value.__exit__.return_value = False
-    export.return_value.__enter__.return_value.close.return_value = "v1"
-    named = [SimpleNamespace(case="x", name=letter, problem=letter) for letter in "abc"]
-    monkeypatch.setattr("verification.solver_suite.reference.certified.certified", certified)
-    monkeypatch.setattr("verification.solver_suite.reference.posed.problems", lambda only: named)
-    monkeypatch.setattr("verification.solver_suite.reference.files.Export", export)
-    options = argparse.Namespace(export=Path("x"), only=["contestant/pins"], json=Path("-"))
-    assert cli_export.run(options) == status
-    found = json.loads(capsys.readouterr().out)
-    assert (found["problems"], found["largest_relative_bound"]) == (2, 0.25)
-    assert (found["not_certified"], found["version"]) == ({"b": "why not"}, "v1")
-
-
-def test_codes_mean_what_the_index_says() -> None:
-    touching = np.array([True, True, False, False])
-    inside, outside = np.array([True, False, False, False]), np.array([False, False, True, False])
-    codes = _codes(touching, inside, outside)
-    assert list(codes) == [CONTACT, APPARENTLY_CONTACT, SEPARATED, APPARENTLY_SEPARATED]
-    assert [files.CODES[code] for code in codes] == [
-        "in contact, proven",
-        "in contact as exported, within the bounds of separation",
-        "separated, proven",
-        "separated as exported, within the bounds of contact",
-    ]

@@ -10,16 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from refimpl.errors import InputError
 from reports.result_files import read_result
 from verification.benchmarks import rounds
-from verification.benchmarks.__main__ import append, known, main
+from verification.benchmarks.__main__ import append, main
 from verification.benchmarks.codes import ALONE, OWN, SHEARED, SLOPED, codes
 from verification.benchmarks.problems import problem
 from verification.benchmarks.rounds import Failed, Turns, error, in_turns, tuned, tuned_turns
-from verification.benchmarks.summary import lines, ratios, row
-from verification.benchmarks.timed import padded_box, peak_memory, residuals_of
-from verification.cli.output import columns
+from verification.benchmarks.summary import ratios, row
+from verification.benchmarks.timed import residuals_of
 from verification.solver_suite import own, reference_solution
 
 
@@ -79,12 +77,6 @@ def test_penetration_and_tension_are_found_and_other_problems_refused() -> None:
     assert off["penetration"] > 1e-3
     with pytest.raises(ValueError, match="free space"):
         residuals_of(replace(posed, periodic=True), pressure)
-
-
-def test_padded_box_is_twice_the_contact() -> None:
-    pressure = np.zeros((40, 40))
-    pressure[3:11, 5:11] = 1.0
-    assert padded_box(pressure) == (16, 12)
 
 
 def tuning(gap: Callable[[float], float], start: float, seconds: float = 1.0) -> tuple[float, list[float]]:
@@ -221,25 +213,6 @@ def test_rows_count_convolutions_on_the_padded_box() -> None:
     assert "seconds" not in row(Turns("absent", "smooth", 64, 1e-8, failure="left out"))
 
 
-def test_lines_show_ratios_and_who_was_left_out() -> None:
-    left_out = Turns("absent", "smooth", 64, 1e-8, failure="not run: 900 s expected")
-    both = [turns(OWN, 1.0), turns("peer", 3.0), left_out]
-    shown = lines([row(one) for one in both], [{"kind": "smooth", "M": 64, **ratios(both)}])
-    assert [cells[:4] for cells in shown[1:3]] == [
-        ["smooth 64", OWN, "1", ""],
-        ["smooth 64", "peer", "3", "3"],
-    ]
-    assert shown[3] == ["smooth 64", "absent", "", "", "", "", "not run: 900 s expected"]
-    assert "not run" in columns(shown)
-    assert shown[1][-1] == "300 MB"
-
-
-def test_names_are_checked() -> None:
-    assert known("--kinds", None, ["smooth", "rough"]) == ["smooth", "rough"]
-    with pytest.raises(InputError, match="--codes"):
-        known("--codes", "hertz", [OWN])
-
-
 def test_a_record_only_grows(tmp_path: Path) -> None:
     file = tmp_path / "record.json"
     append({"rows": [1]}, file)
@@ -260,10 +233,6 @@ def test_our_codes_solve_table_1(name: str) -> None:
         assert pressed.residual is not None
         assert pressed.residual <= 1e-8
         assert found["gap"] > 1e-3  # copper and steel couple, so the frictionless judge must object
-
-
-def test_peak_memory_is_of_this_process() -> None:
-    assert 2e7 < peak_memory() < 1e11
 
 
 def test_a_run_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -19,7 +19,6 @@ from verification.reproduction.errata import ERRATA
 from verification.reproduction.printed import FIG6_RMS, MESHES, SIDE, TABLE2, TABLE3
 from verification.reproduction.table1 import SMOOTH, hertz, rough
 from verification.reproduction.tangential import displacements, element_integrals
-from verification.reproduction.tiers import in_both_tiers
 from verification.sweep.run import Row
 from verification.sweep.study_file import study_from_dict
 
@@ -40,24 +39,6 @@ def test_every_table_and_figure_has_a_case_in_both_tiers() -> None:
         assert quick, name
         for i in quick:
             assert i == "reproduction/fig6d" or cases[f"{i}-full"] == "full"
-
-
-def test_both_tiers_are_declared_where_the_function_stands(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(registry, "_declared", {})
-    told: list[str] = []
-
-    @in_both_tiers(
-        "a/b", title="t", claim="c", source="s", metric="at_most", tolerance={"quick": 2.0, "full": 1.0},
-        tolerance_reason="r",
-    )  # fmt: skip
-    def function(tier: str) -> ensemble.Estimate:  # type: ignore[return]  # only what it is told counts
-        told.append(tier)
-
-    for case_id, tolerance in (("a/b", 2.0), ("a/b-full", 1.0)):
-        case = registry.find(case_id)
-        assert (case.module, case.tolerance) == (__name__, tolerance)
-        case.run()
-    assert told == ["quick", "full"]
 
 
 def test_errata_are_of_different_places() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import os
 import random
 import shutil
@@ -138,19 +137,6 @@ def test_pipes_and_folders_are_refused(end: str, make: Callable[[Path], None], t
         pass
 
 
-def test_a_store_that_may_not_be_opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """In no folder, and by the error of the system call: a file mode would not stop root."""
-    with pytest.raises(InputError, match="store"), open_store(tmp_path / "none" / "s.sqlite"):
-        pass
-
-    def refuses(*_: object) -> int:
-        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
-
-    monkeypatch.setattr(os, "open", refuses)
-    with pytest.raises(InputError, match="Permission denied"), open_store(tmp_path / "s.sqlite"):
-        pass
-
-
 @pytest.mark.parametrize(
     ("stop", "said"),
     [("pragma query_only = on", "readonly"), ("pragma max_page_count = 1", "full")],
@@ -160,14 +146,6 @@ def test_a_store_that_can_no_longer_be_written_is_refused(tmp_path: Path, stop: 
     stopped = f"{stop}; create table t as select zeroblob(100000)"
     with pytest.raises(InputError, match=said), open_store(tmp_path / "s.sqlite") as kept:
         kept._connection.executescript(stopped)
-
-
-def test_a_fault_of_the_callers_own_sql_is_no_bad_input(tmp_path: Path) -> None:
-    path = tmp_path / "s.sqlite"
-    with pytest.raises(sqlite3.OperationalError, match="no such table"), open_store(path) as kept:
-        kept._connection.execute("select 1 from nowhere")
-    with open_store(path):  # and the lock is given back
-        pass
 
 
 def test_a_file_whose_creation_was_killed_is_new(tmp_path: Path) -> None:
@@ -258,15 +236,6 @@ def test_a_run_is_kept_once(tmp_path: Path, finished: tuple[Run, Row, float]) ->
         kept.add(*finished)
         with pytest.raises(sqlite3.IntegrityError):
             kept.add(*finished)
-
-
-def test_a_table_dropped_during_the_sweep(tmp_path: Path, finished: tuple[Run, Row, float]) -> None:
-    with open_store(tmp_path / "s.sqlite") as kept:
-        by_hand = sqlite3.connect(tmp_path / "s.sqlite", isolation_level=None)
-        by_hand.execute("drop table runs")
-        with pytest.raises(InputError, match="no such table"):
-            kept.add(*finished)
-    by_hand.close()
 
 
 def test_numbers_that_do_not_exist_are_kept_as_none(tmp_path: Path, finished: tuple[Run, Row, float]) -> None:

@@ -12,7 +12,7 @@ from refimpl.scene.parameters import with_parameter
 from refimpl.scene.scene import Body
 from verification.cases import Measured, case, family
 from verification.coverage.identification import SETS, TableSet, study, summary
-from verification.coverage.synthetic_tables import KINDS, ROUGHNESS_TOLERANCE, SHARP
+from verification.coverage.synthetic_tables import GRIDS, KINDS, ROUGHNESS_TOLERANCE, SHARP_GRID
 
 OUTLIER_ROW, OUTLIER = 4, 1.10
 FINE, COARSE = 256, 128
@@ -29,16 +29,16 @@ def _coverage(tables: TableSet, seeds: range) -> Measured:
     return Measured(value=value, data=found, note=note)
 
 
-@case("identification/twins-sample", metric="at_least", tolerance=0.8)
+@case("identification/twins-sample", metric="at_least", tolerance=0.75)
 def synthetic_sample() -> Measured:
-    """95 % intervals of tau, beta and a new load's mu, one twin of each kind.
+    """95 % intervals of tau, beta and a new load's mu, one twin of each kind on {GRIDS[0]} elements.
 
     Claim: The intervals cover the truth on balls and planes, elastic and at the hardness.
     Source: as identification/twins, other seeds
-    Tolerance: four of five twins: one miss among five has a probability of 0.2 at 95 %
+    Tolerance: three of four twins: one miss among four has a probability of 0.17 at 95 %
     """
-    stop = SETS["drawn"].seeds.stop
-    return _coverage(SETS["drawn"], range(stop, stop + len(KINDS)))
+    stop, step = SETS["drawn"].seeds.stop, len(GRIDS)
+    return _coverage(SETS["drawn"], range(stop, stop + step * len(KINDS), step))
 
 
 @family(
@@ -46,14 +46,14 @@ def synthetic_sample() -> Measured:
     {
         "identification/twins": (
             "drawn", "95 % intervals of tau, beta and a new load's mu, in random twins",
-            "The intervals cover the truth, and the warning stands in every twin whose tau is not "
-            "determined.",
-            "twins whose friction is known; coverage as in ASME V&V 20 (2009)",
-            0.90, "95 %, less two standard deviations of 100 twins (4.4 %) and rounding"),
+            "The intervals cover the truth on each grid, under a drift, with a row off by eight deviations "
+            "or by a factor of 1000; the warning stands in every twin whose tau is not determined.",
+            "twins whose friction is known on 512 elements; coverage as in ASME V&V 20 (2009)",
+            0.86, "95 %, less two standard deviations of 26 twins (8.5 %) and rounding"),
         "identification/sharp-twins": (
             "sharp", "95 % intervals of tau below 5 %, without a warning",
             "Ten to twelve loads over two to three decades, noise 0.5 %, rough balls on "
-            f"{SHARP.fit} elements a side: the intervals cover the truth, and no twin whose tau is "
+            f"{SHARP_GRID} elements a side: the intervals cover the truth, and no twin whose tau is "
             "known within 5 % has the warning.",
             "as identification/twins, other seeds",
             0.85, "95 %, less two standard deviations of 20 twins (9.7 %) and rounding"),
@@ -73,9 +73,12 @@ def synthetic_sample() -> Measured:
     },
     metric="at_least", tier="full",
 )  # fmt: skip
-def third(tables: str) -> Measured:
-    """Judge every third synthetic table of a study: all of them take longer than a tier should."""
-    return _coverage(SETS[tables], SETS[tables].seeds[::3])
+def some(tables: str) -> Measured:
+    """Judge every third twin of a study, or every seventh: all of them take longer than a tier should.
+
+    Seven are no multiple of the drawn twins' grids.
+    """
+    return _coverage(SETS[tables], SETS[tables].seeds[:: 7 if tables == "drawn" else 3])
 
 
 @case("identification/effects", metric="at_most", tolerance=0.01)

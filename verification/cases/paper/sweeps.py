@@ -82,7 +82,7 @@ def killed() -> Measured:
     kept: list[int] = []
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
-        (folder / "study.toml").write_text(STUDY)
+        (folder / "study.toml").write_text(STUDY, encoding="utf-8")
         command = [*COMMAND, "sweep", "study.toml", "--store", "s.sqlite", "--csv", "s.csv"]
         for _ in range(KILLS):
             running = subprocess.Popen(
@@ -94,7 +94,7 @@ def killed() -> Measured:
             running.wait()
             kept.append(_finished(folder / "s.sqlite"))
         subprocess.run(command, cwd=folder, check=True, capture_output=True)
-        ours = _untimed((folder / "s.csv").read_text()).splitlines()
+        ours = _untimed((folder / "s.csv").read_text(encoding="utf-8")).splitlines()
         whole = _untimed(_table(_small(150), folder / "whole.sqlite", workers=2)).splitlines()
     if kept != sorted(kept) or not 0 < kept[-1] < len(whole) - 1:
         raise ArithmeticError(f"finished runs were lost, or the kills hit nothing: {kept}")

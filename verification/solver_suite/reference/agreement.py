@@ -27,12 +27,12 @@ from verification.solver_suite.reference.files import FORMAT, INDEX, SUMS, check
 def index_of(folder: Path) -> dict[str, Any]:
     """Read the index. Raises `InputError` for a folder without one of this format."""
     try:
-        index: dict[str, Any] = json.loads((folder / INDEX).read_text(encoding="utf-8"))
+        index: Any = json.loads((folder / INDEX).read_text(encoding="utf-8"))
     except (OSError, ValueError) as broken:
         raise InputError("DIR", str(folder), f"a folder of reference data ({broken})") from broken
     if not isinstance(index, dict) or index.get("format") != FORMAT:
         raise InputError("DIR", str(folder), f"an index whose format is {FORMAT!r}")
-    return index
+    return dict(index)
 
 
 def problem_of(folder: Path, entry: Mapping[str, Any]) -> ContactProblem:

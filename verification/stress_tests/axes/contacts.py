@@ -14,7 +14,7 @@ import refimpl as rf
 from refimpl.grid import Array
 from refimpl.planning.plan import Method
 from verification.scenes.cross_checks import POLYMER, STEEL, TABLE1, pressed
-from verification.stress_tests.judge import SOLVERS, M, by_oracle, judged_on_exceptions, state
+from verification.stress_tests.judge import SOLVERS, M, by_oracle, caught, state
 from verification.stress_tests.state import Extreme, Judged
 
 SIDE = 1e-3
@@ -112,7 +112,7 @@ def pair(upper: rf.Material, lower: rf.Material, beta: float = 0.3) -> rf.Scene:
     return replace(scene, load=load, friction=replace(TABLE1, tau=tau, beta=beta))
 
 
-@judged_on_exceptions
+@caught
 def of_ratios(upper: float, lower: float, method: Method) -> Judged:
     """Bodies of two Poisson's ratios, which may be refused."""
     return by_oracle(pair(rf.Material(2e11, upper), rf.Material(3e9, lower)), M, method)

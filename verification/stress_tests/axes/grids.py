@@ -11,22 +11,14 @@ import numpy as np
 import refimpl as rf
 from verification.exact import hertz
 from verification.scenes.cross_checks import POLYMER, STEEL, pressed
-from verification.stress_tests.judge import (
-    GOOD,
-    SOLVERS,
-    TOLERANCE,
-    change,
-    judged_on_exceptions,
-    state,
-    verdict,
-)
+from verification.stress_tests.judge import GOOD, SOLVERS, TOLERANCE, caught, change, state, verdict
 from verification.stress_tests.state import Extreme, Judged
 
 TINY, PRIMES, LARGEST = (1, 2, 3, 5, 7), (11, 13, 17, 19, 23), 2048
 LINES = (1, 2, 4, 8, 16)
 
 
-@judged_on_exceptions
+@caught
 def against_dense(scene: rf.Scene, M: int) -> Judged:
     """The production solver against the dense one, whose certificate is at rounding."""
     found = rf.solve(scene, M, tolerance=TOLERANCE)
@@ -36,7 +28,7 @@ def against_dense(scene: rf.Scene, M: int) -> Judged:
     return verdict(found, change(found, exact), "the dense solver")
 
 
-@judged_on_exceptions
+@caught
 def against_hertz(M: int) -> Judged:
     """A smooth ball, frictionless: peak and approach within 2 (spacing / a)^2, the elements' cost."""
     scene = replace(pressed(rms=None), friction=rf.Friction())

@@ -9,7 +9,7 @@ from typing import Any
 
 from refimpl.kernels import normal_integral, tangential_integral
 from verification.exact import kernel_reference as reference
-from verification.stress_tests.judge import judged_on_exceptions
+from verification.stress_tests.judge import caught
 from verification.stress_tests.state import Extreme, Judged, number
 
 LIMIT = 1e-13
@@ -23,7 +23,7 @@ INTEGRALS: dict[str, tuple[Callable[..., Any], Callable[..., Any]]] = {
 }
 
 
-@judged_on_exceptions
+@caught
 def against_digits(kind: str, x: float, y: float, dx: float, dy: float) -> Judged:
     """One value against 50 digits; at x = 0 the tangential one is zero exactly."""
     integral, exact = INTEGRALS[kind]

@@ -20,7 +20,7 @@ from appendix_a.fem.halfplane import pressed_strip
 from appendix_a.fem.mesh import Source
 from appendix_a.wedge import reference
 from refimpl.grid import Array
-from verification.stress_tests.judge import judged_on_exceptions
+from verification.stress_tests.judge import caught
 from verification.stress_tests.state import Extreme, Judged, Verdict, number
 
 WEDGE_LIMIT = 2e-10
@@ -41,7 +41,7 @@ OFFSETS = np.array([-10.0, -4.0, -1.0, 0.5, 2.0, 3.0, 10.0])
 SETUP = Setup((Source(-1.0, -1.0, 2.0**-7, 1.0), Source(1.0, 1.0, 2.0**-7, 1.0)), 1024.0)
 
 
-@judged_on_exceptions
+@caught
 def wedge_at(gamma: float, r: float) -> Judged:
     """Stresses half-way to a face against the other formulation in 18 digits, or the exact limits of r."""
     theta = 0.5 * (math.pi / 2 - gamma)
@@ -66,7 +66,7 @@ def _limits(gamma: float, theta: float, r: float) -> Array:
     return np.array([radial / r, 0.0, 0.0])
 
 
-@judged_on_exceptions
+@caught
 def pressed(nu: float, *, formulation: str, jitter: float = 0.0) -> Judged:
     """Surface displacement of a flat body under a strip against the closed form."""
     direct = formulation == "direct"

@@ -13,16 +13,7 @@ import refimpl as rf
 from refimpl.grid import Array
 from refimpl.planning.plan import Method
 from verification.scenes.cross_checks import POLYMER, STEEL, TABLE1, pressed
-from verification.stress_tests.judge import (
-    GOOD,
-    SOLVERS,
-    TOLERANCE,
-    M,
-    change,
-    judged_on_exceptions,
-    state,
-    verdict,
-)
+from verification.stress_tests.judge import GOOD, SOLVERS, TOLERANCE, M, caught, change, state, verdict
 from verification.stress_tests.state import Extreme, Judged
 
 SIDE = 1e-3
@@ -49,7 +40,7 @@ def sloped(angle: float) -> Array:
     return np.asarray(NOISE * (math.tan(angle) / step))
 
 
-@judged_on_exceptions
+@caught
 def shifted(offset: float, *, dyadic: bool, method: Method) -> Judged:
     """Heights plus an offset against the same heights without one: no more is lost than the data lost."""
     z = np.round(NOISE * 2**8) * 2.0**-28 if dyadic else 1e-6 * NOISE

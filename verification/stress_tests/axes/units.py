@@ -16,7 +16,7 @@ import numpy as np
 import refimpl as rf
 from refimpl.planning.plan import Method
 from verification.scenes.cross_checks import COPPER, STEEL
-from verification.stress_tests.judge import judged_on_exceptions, verdict
+from verification.stress_tests.judge import caught, verdict
 from verification.stress_tests.state import Extreme, Judged
 
 TOLERANCE = 1e-12
@@ -90,7 +90,7 @@ def change(
     return found[worst], f"worst in {worst}"
 
 
-@judged_on_exceptions
+@caught
 def run(method: Method, periodic: bool, length: float, stress: float, similar: float, limit: float) -> Judged:
     """Solve the scaled scene and compare."""
     oblique = similar == 1.0

@@ -1,0 +1,107 @@
+"""The process that reads binary files from anywhere: a parser that crashes or never ends takes none along.
+
+One for all files of this process, a fresh interpreter that is started with the first, in which parsers stay
+imported. It ends with its standard input.
+"""
+
+from __future__ import annotations
+
+import atexit
+import faulthandler
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import TypeVar
+
+from refimpl.errors import InputError
+
+T = TypeVar("T")
+
+SECONDS = 240.0  # for a file, on a busy machine: 16 million points take three of processor time
+_CODE = "from refimpl.measured.reader_process import serve; serve()"
+_LOCK = threading.Lock()
+_started: dict[int, subprocess.Popen[bytes]] = {}
+"""The reader by the process that started it, of which a fork has none."""
+
+
+def read_elsewhere(path: Path, load: Callable[[], T]) -> T:
+    """Return what ``load``, which can be pickled, returns in the reader; raises `InputError` where it does.
+
+    So it does where the reader crashes or takes more than `SECONDS`; the next file gets a new one.
+    """
+    with _LOCK:
+        reader = _reader()
+        assert reader.stdin is not None  # both are pipes
+        assert reader.stdout is not None
+        try:
+            pickle.dump((os.getcwd(), SECONDS, load), reader.stdin)
+            reader.stdin.flush()
+            found = pickle.load(reader.stdout)
+        except (EOFError, OSError, pickle.UnpicklingError):
+            status = _end()
+            allowed = f"a file that can be read (its reader crashed or took too long: exit status {status})"
+            raise InputError("path", str(path), allowed) from None
+        except BaseException:  # an interrupt: the answer would be taken for that to the next file
+            _end()
+            raise
+    if isinstance(found, InputError):
+        raise found
+    result: T = found
+    return result
+
+
+def _reader() -> subprocess.Popen[bytes]:
+    """The living reader, started where there is none."""
+    own = os.getpid()
+    if own not in _started or _started[own].poll() is not None:
+        _started[own] = subprocess.Popen(
+            [sys.executable, "-c", _CODE],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)},
+        )
+    return _started[own]
+
+
+@atexit.register
+def _end() -> int | None:
+    """End the reader and return its exit status, its own where it ended before."""
+    reader = _started.pop(os.getpid(), None)
+    if reader is None:
+        return None
+    for pipe in (reader.stdin, reader.stdout):
+        with suppress(OSError):  # bytes that were not yet sent
+            pipe.close()  # type: ignore[union-attr]  # both are pipes
+    try:
+        return reader.wait(0.5)
+    except subprocess.TimeoutExpired:
+        reader.kill()
+        return reader.wait()
+
+
+def serve() -> None:
+    """In the reader: answer until standard input ends. What parsers print goes nowhere."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with os.fdopen(os.dup(1), "wb") as answers, open(os.devnull, "wb") as nowhere:
+        os.dup2(nowhere.fileno(), 1)
+        while True:
+            try:
+                folder, seconds, load = pickle.load(sys.stdin.buffer)
+            except EOFError:
+                return
+            os.chdir(folder)
+            faulthandler.dump_traceback_later(seconds, exit=True, file=nowhere)
+            try:
+                found = load()
+            except InputError as refused:
+                found = refused
+            faulthandler.cancel_dump_traceback_later()
+            pickle.dump(found, answers)
+            answers.flush()

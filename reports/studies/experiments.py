@@ -1,0 +1,102 @@
+"""Published experiments: prediction and measurement of each, after ASME V&V 20."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure as Canvas
+
+from reports.drawing import INK, Data, Figure, look
+from reports.exhibit import Column, Document, Exhibit, table
+from reports.text import interval
+
+COLUMNS: dict[str, Column] = {
+    "D, measured": lambda row: interval(row["measured"], row["measured_half_width"]),
+    "S, predicted": "{predicted:.4g}",
+    "U_num": "{numerical:.2g}",
+    "U_input": "{input:.2g}",
+    "E = S - D": "{error:+.2g}",
+    "U_val": "{uncertainty:.2g}",
+    "|E| <= U_val": "within",
+}
+INTRODUCTION = (
+    "E is the predicted number S less the measured one D. U_val joins, in squares, the uncertainties of the "
+    "solver, U_num, of the inputs, U_input, and of the measurement, U_D: half-widths at 95 %. Where a "
+    "parameter is fitted to data of the same experiment, the trend alone is judged."
+)
+
+
+def build(document: Document) -> Exhibit:
+    """Return paragraphs, a table and a figure for each experiment."""
+    found = document["experiments"]
+    return Exhibit(
+        "Experiments",
+        [INTRODUCTION, *(_text(one) for one in found)],
+        [
+            table(
+                f"{one['title']}: {one['quantity']}{_unit(one)}.",
+                one["points"],
+                {one["over"]: lambda row: row["at"], **COLUMNS},
+            )
+            for one in found
+        ],
+        [(_figure(one), _data(one)) for one in found],
+    )
+
+
+def sentences(document: Document) -> list[str]:
+    """Return what the first page states: what was compared, what lies within U_val, where the model fails.
+
+    >>> one = {"title": "Ball on film", "trend_only": True, "failure": "", "points": [{"within": True}] * 2}
+    >>> sentences({"experiments": [one]})
+    ['1 experiments: ball on film', '2 of 2 points lie within U_val, 2 by trend alone', 'No failure']
+    """
+    found = document["experiments"]
+    points = [(one["trend_only"], point["within"]) for one in found for point in one["points"]]
+    held = [trend for trend, within in points if within]
+    titles = [one["title"][0].lower() + one["title"][1:] for one in found]
+    failures = " and ".join(
+        f"{title} ({one['failure']})" for title, one in zip(titles, found, strict=True) if one["failure"]
+    )
+    return [
+        f"{len(found)} experiments: {', '.join(titles)}",
+        f"{len(held)} of {len(points)} points lie within U_val, {sum(held)} by trend alone",
+        f"The model fails for {failures}" if failures else "No failure",
+    ]
+
+
+def _text(one: dict[str, Any]) -> str:
+    parts = f"{one['fitted']} Data: {one['reduction']} Neglected: {one['left_out']} Source: {one['source']}."
+    return f"{one['title']}. {parts}"
+
+
+def _unit(one: dict[str, Any]) -> str:
+    return f" ({one['unit']})" if one["unit"] else ""
+
+
+def _data(one: dict[str, Any]) -> Data:
+    points = one["points"]
+    numbers = {key: [p[key] for p in points] for key in points[0] if key != "at"}
+    return {"at": [str(p["at"]) for p in points], **numbers}
+
+
+def _figure(one: dict[str, Any]) -> Figure:
+    """Measured and predicted numbers over the measured one."""
+
+    def draw(canvas: Canvas, data: Data) -> None:
+        axes, places = canvas.add_subplot(), np.arange(len(data["at"]))
+        scale = np.array(data["measured"], dtype=float)
+        for shift, number, half, label, k in (
+            (-0.06, "measured", "measured_half_width", "measured, with U_D", 1),
+            (0.06, "predicted", "uncertainty", "predicted, with U_val", 0),
+        ):
+            style: dict[str, Any] = {"linestyle": "none", "capsize": 3, "label": label, **look(k)}
+            axes.errorbar(places + shift, data[number] / scale, data[half] / abs(scale), **style)
+        axes.axhline(1.0, color=INK, linestyle=":", linewidth=1)
+        axes.set(xlabel=one["over"], ylabel="number / measured number", xlim=(-0.5, len(places) - 0.5))
+        axes.set_xticks(places, data["at"])
+        axes.legend()
+
+    needs = ("at", "measured", "measured_half_width", "predicted", "uncertainty")
+    return Figure("*", needs, draw, f"{one['title']}: {one['quantity']}, over the measured number.")

@@ -1,0 +1,154 @@
+"""Surfaces and friction laws of one's own, through the public interface."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from refimpl.driver.solve import solve
+from refimpl.errors import InputError
+from refimpl.grid import Array, Grid, Mask
+from refimpl.identification.data_table import Row
+from refimpl.identification.identify import identify
+from refimpl.scene.parameters import parameters
+from refimpl.sensitivities.budget import budget
+
+SIZE = (1.2e-3, 0.9e-3)
+SOFT, HARD = rf.Material(E=2.5e9, nu=0.2), rf.Material(E=200e9, nu=0.3)
+
+
+@dataclass(frozen=True)
+class Ridge(rf.Surface):
+    """``-(x - at)^2 / (2 radius)``, a ridge along y at x = at (m), with waves along it."""
+
+    at: float
+    radius: float = 0.05
+
+    def heights_on(self, grid: Grid, offset: tuple[float, float]) -> Array:
+        x, y = grid.x + offset[0] - self.at, grid.y + offset[1]
+        z: Array = 1e-7 * np.cos(2e4 * y) - (x**2 / (2 * self.radius))[:, None]
+        return z
+
+
+@dataclass(frozen=True)
+class Limited:
+    """``r = min(tau + beta f, limit)``: jump = tau (Pa), slope = beta, limit in Pa."""
+
+    jump: float = 0.3e6
+    slope: float = 0.2
+    limit: float = math.inf
+    is_linear = False
+
+    def traction(self, pressure: Array, active: Mask) -> Array:
+        law = np.minimum(self.jump + self.slope * pressure, self.limit)
+        return np.where(active, law, self.slope * pressure)
+
+    def held_traction(self, pressure: Array, active: Mask) -> Array:
+        return self.traction(pressure, active) - self.slope * pressure
+
+
+def scene(law: Any = rf.Friction(tau=0.3e6, beta=0.2), **more: Any) -> rf.Scene:  # noqa: B008  # immutable
+    return rf.Scene(rf.Body(HARD, rf.Sphere(0.03)), rf.Body(SOFT, Ridge(5e-4)), law, 2.0, size=SIZE, **more)
+
+
+def test_a_surface_is_sampled_at_the_element_centres_of_a_rectangle_moved_by_the_offset() -> None:
+    """Centres of 3 x 2 elements at 0.2, 0.6, 1.0 mm and 0.225, 0.675 mm; sliding by 0.1 mm along y."""
+    slid = scene(sliding_direction=math.pi / 2, sliding_offset=1e-4)
+    lower, _ = slid.heights(slid.grid((3, 2)))
+    x, y = np.array([2e-4, 6e-4, 1e-3]) - 5e-4, np.array([2.25e-4, 6.75e-4]) + 1e-4
+    expected = -(x[:, None] ** 2) / 0.1 + 1e-7 * np.cos(2e4 * y)
+    np.testing.assert_allclose(lower - lower[0, 0], expected - expected[0, 0], rtol=0, atol=1e-20)
+    assert (slid.lower.surface + np.zeros((4, 4))).parts[0] == Ridge(5e-4)
+
+
+@pytest.mark.parametrize(
+    "z",
+    [np.zeros((2, 3)), 0.0, np.zeros((3, 2), complex), np.full((3, 2), "1")],
+    ids=["shape", "0", "i", "text"],
+)
+def test_heights_of_another_shape_or_kind_are_refused(z: object, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Ridge, "heights_on", lambda *_: z)
+    with pytest.raises(InputError, match=r"Ridge\.heights_on.*\(3, 2\)"):
+        scene().heights(scene().grid((3, 2)))
+
+
+def test_the_former_name_works_for_one_release() -> None:
+    with pytest.warns(DeprecationWarning, match="Old: _sample is now heights_on"):
+
+        class Old(rf.Surface):
+            def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
+                return grid.zeros + offset[0]
+
+    assert Old().heights(Grid((2, 3), SIZE), (5.0, 0.0)).tolist() == [[5.0] * 3] * 2  # type: ignore[abstract]  # old
+
+
+@pytest.mark.parametrize("part", ["surface", "law"])
+def test_a_scene_file_has_neither(part: str) -> None:
+    own = scene(Limited()) if part == "law" else scene()
+    with pytest.raises(InputError, match="Limited" if part == "law" else "Ridge"):
+        rf.scene_to_toml(own)
+
+
+def test_a_law_without_its_limit_is_the_papers() -> None:
+    """The same law through the held traction of a law that is not linear: to the solver's tolerance."""
+    papers, own = (solve(scene(law), grid=32, tolerance=1e-10) for law in (scene().friction, Limited()))
+    assert own.converged
+    for name in ("friction_coefficient", "friction_coefficient_corrected", "contact_area"):
+        assert getattr(own, name) == pytest.approx(getattr(papers, name), rel=1e-8)
+
+
+def test_a_law_with_a_limit_is_solved_corrected_and_summarised() -> None:
+    """No element carries more than the limit; the excess of the same contact edge carries the same jump."""
+    most = 1.2e6
+    s, papers = (solve(scene(law), grid=32) for law in (Limited(limit=most), scene().friction))
+    assert s.converged
+    assert s.traction.max() == most
+    assert most * s.contact_area > s.friction_force > 0.3e6 * s.contact_area
+    np.testing.assert_array_equal(s.contact, papers.contact)
+    excess = papers.friction_coefficient - papers.friction_coefficient_corrected
+    assert s.friction_coefficient - s.friction_coefficient_corrected == pytest.approx(excess, rel=1e-6)
+    assert (
+        json.loads(json.dumps(s.summary(), allow_nan=False))["friction_coefficient"] == s.friction_coefficient
+    )
+
+
+def test_a_law_that_is_not_linear_has_no_derivatives_and_a_linear_one_has() -> None:
+    """Of ``r = jump + slope f`` with other names the derivatives are those of tau and beta."""
+    own = scene(Limited(limit=1e9))
+    found = solve(own, grid=32)
+    with pytest.raises(InputError, match="linear"):
+        rf.sensitivity(own, found)
+    with pytest.raises(InputError, match="linear"):
+        budget(own, found, {"load": 0.1})
+
+    class Linear(Limited):
+        is_linear = True
+
+    twin = scene(Linear())
+    assert {"friction.jump": 0.3e6, "friction.slope": 0.2}.items() <= parameters(twin).items()
+    papers, ours = (rf.sensitivity(one, solve(one, grid=32)) for one in (scene(), twin))
+    for theirs, name in (("friction.tau", "friction.jump"), ("friction.beta", "friction.slope")):
+        expected = papers.derivatives["friction_coefficient"][theirs]
+        assert ours.derivatives["friction_coefficient"][name] == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "law",
+    [0.3, None, Limited(jump=-1.0), Limited(slope=math.nan), type("Half", (), {"jump": 1.0, "slope": 0.0})()],
+)
+def test_what_is_no_law_is_refused(law: object) -> None:
+    with pytest.raises(InputError, match=r"^friction"):
+        scene(law)
+
+
+def test_the_plain_reference_and_identification_know_the_papers_law_alone() -> None:
+    with pytest.raises(InputError, match="no other law"):
+        solve(scene(Limited()), grid=16, method="dense")
+    with pytest.raises(InputError, match="whose tau and beta are found"):
+        identify(scene(Limited()), [Row(1.0, 0.3, 0.01), Row(2.0, 0.25, 0.01), Row(3.0, 0.2, 0.01)], 16)

@@ -1,0 +1,1 @@
+"""Cases of validation: predictions beside published measurements."""
