@@ -6,8 +6,6 @@ import math
 import time
 from dataclasses import dataclass
 
-import psutil
-
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Grid
 
@@ -63,6 +61,8 @@ class Allowance:
         if limits.max_grid is not None and size > limits.max_grid:
             raise InputError("grid", size, f"at most max_grid = {limits.max_grid} elements a side")
         if limits.max_memory is not None:
+            import psutil  # here and not above: importing refimpl is quick
+
             resident = psutil.Process().memory_info().rss
             if memory + resident > limits.max_memory:
                 arrays, process, most = (b / 1e9 for b in (memory, resident, limits.max_memory))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -41,12 +43,12 @@ def _read_or_refuse(path: Path, load: Callable[[], T]) -> T:
 
 
 def _is_binary(path: Path) -> bool:
-    try:
-        with path.open("rb") as file:
-            head = file.read(_HEAD)
-    except OSError:  # the reader says which
+    if not os.path.isfile(path):  # no error for long names, no waiting for a pipe
         return False
-    return b"\0" in head and not head.startswith(_NUMPY)
+    with suppress(OSError), path.open("rb") as file:  # an error is for `_read_or_refuse`
+        head = file.read(_HEAD)
+        return b"\0" in head and not head.startswith(_NUMPY)
+    return False
 
 
 def refuse_huge(path: Path, heights: Array) -> None:

@@ -36,6 +36,7 @@ from refimpl.model.state import Status
 _REACH = 2.0  # over the gap change by tau on single elements; with 1 slow convergence on 2048 x 2048, with 4
 #               a third more excluded elements (150 random scenes, 256 x 256)
 _LEAST_RATIO = 0.01  # least shear compliance in the reach, over the normal one: else tau moves only slopes
+_LEAST_REACH = 1e-200  # m; a clearance over it is a double
 _MOST_EXCLUDED = 0.5  # share of the contact; reached where tau is two to three times p_max
 _ACTIVE_SETS = 200  # limit of the loop
 _MOST_STAGNATED = 3  # solves in a row that do not converge: their contact sets are not the rule's
@@ -102,12 +103,13 @@ class GradualSet:
 
 
 def first_set(problem: Problem) -> ActiveSet:
-    """Return the gradual set of a problem; every element where the law has no jump."""
+    """Return the gradual set of a problem; every element where the law's jump is too small to move any."""
     law, elasticity = problem.friction, problem.elasticity
-    if law.jump == 0:
-        return FixedSet(np.ones(problem.gap.shape, dtype=bool))
     ratio = max(abs(elasticity.coupling_ratio), _LEAST_RATIO)
-    return GradualSet(_REACH * ratio * law.jump * elasticity.element_compliance(problem.grid))
+    reach = _REACH * ratio * law.jump * elasticity.element_compliance(problem.grid)
+    if reach < _LEAST_REACH:
+        return FixedSet(np.ones(problem.gap.shape, dtype=bool))
+    return GradualSet(reach)
 
 
 class TauSolver(Protocol):

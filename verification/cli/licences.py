@@ -87,7 +87,7 @@ def main() -> None:
     """Write the table in the place of that of the page."""
     text = PAGE.read_text(encoding="utf-8").partition("\n| ")[0]
     written = [f"| {' | '.join(row)} |" for row in (HEAD, ("---",) * len(HEAD), *rows(table()))]
-    PAGE.write_text("\n".join([text, "", *written, ""]), encoding="utf-8")
+    PAGE.write_text("\n".join([text.rstrip(), "", *written, ""]), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -226,7 +226,7 @@ def gap_histogram(axes: Axes, solution: Solution, view: View) -> None:
     contact = view.cut(solution.contact)
     gap = view.cut(solution.gap)[~contact] / view.gap.size
     if len(gap):
-        top = float(np.percentile(gap, 99.9)) or 1.0
+        top = max(float(np.percentile(gap, 99.9)), 0.0) or 1.0  # gaps of rounding may be negative
         _histogram(axes, gap, top, contact.size, GREEN)
         axes.set_xlim(0.0, top)
     where = "domain" if view.whole else "window"

@@ -63,7 +63,7 @@ def run(options: argparse.Namespace) -> int:
         raise refusal("--output", str(options.output), "a folder that can be written to")
     try:
         evidence = gathered(results, committed)
-        said = departures(evidence, registered(), is_known, datetime.now(UTC))
+        said = departures(evidence, registered(evidence.solver), is_known, datetime.now(UTC))
         with StatusLine() as line:
             page = render(results, committed, against, line.show, said)
     except ResultFileError as alien:  # data that no figure can show
@@ -88,13 +88,14 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def registered() -> dict[str, dict[str, Any]]:
-    """Claim, metric, tolerance and tier of this version's cases, and of its suite for contact solvers."""
+def registered(solver: str | None) -> dict[str, dict[str, Any]]:
+    """Claim, metric, tolerance and tier of this version's cases; of a run of a solver, the suite's too."""
     from verification.framework.registry import load
     from verification.solver_suite import convergence, suite
 
-    rows: list[tuple[Case | Check, str, str]] = [(case, case.claim, case.tier.value) for case in load()]
-    rows += [(check, check.description, "") for check in (*suite.thorough(), *convergence.CASES)]
+    checks = () if solver is None else (*suite.thorough(), *convergence.CASES)
+    rows: list[tuple[Case | Check, str, str]] = [(check, check.description, "") for check in checks]
+    rows += [(case, case.claim, case.tier.value) for case in load()]
     return {
         case.id: {"claim": claim, "metric": case.metric.value, "tolerance": case.tolerance, "tier": tier}
         for case, claim, tier in rows

@@ -304,13 +304,13 @@ def test_a_wrong_row_is_named_and_dropped_and_two_wrong_rows_are_named(smooth: r
     grid = 2 * M
     rows = _rows(smooth, 0.01, grid=grid)
     rows[2] = replace(rows[2], mu=1.12 * rows[2].mu)
-    found = identify(_blind(smooth), rows, grid, design=False)
+    found = identify(_without_friction(smooth), rows, grid, design=False)
     assert (found.outliers, found.fitted.dropped, found.degrees) == ((2,), 2, 2)
     assert found.values["tau"].value == pytest.approx(15e6, rel=1e-3)
     assert "row 3 (20 N) is off by +" in found.warnings[0]
     assert found.deleted[2] > 6
     rows[4] = replace(rows[4], mu=0.7 * rows[4].mu)
-    both = identify(_blind(smooth), rows, grid, design=False)
+    both = identify(_without_friction(smooth), rows, grid, design=False)
     assert both.fitted.dropped is None
     assert {2, 4} <= set(both.outliers)
 
@@ -320,14 +320,14 @@ def test_a_wrong_row_is_named_and_dropped_and_two_wrong_rows_are_named(smooth: r
 )
 def test_loads_in_another_unit_do_not_belong_to_the_scene(smooth: rf.Scene, factor: float, said: str) -> None:
     rows = [replace(row, load=factor * row.load) for row in _rows(smooth, 0.01, (20.0, 40.0, 80.0))]
-    assert said in identify(_blind(smooth), rows, M, design=False).warnings[0]
+    assert said in identify(_without_friction(smooth), rows, M, design=False).warnings[0]
 
 
 def test_a_load_that_the_grid_does_not_resolve_is_named(smooth: rf.Scene) -> None:
     """40 N given as 0.04: a contact of few elements has no weight."""
     rows = _rows(smooth, 0.01)
     rows[3] = replace(rows[3], load=1e-3 * rows[3].load)
-    found = identify(_blind(smooth), rows, M, design=False)
+    found = identify(_without_friction(smooth), rows, M, design=False)
     assert any("exceeds mu in row 4 (0.04 N)" in text for text in found.warnings)
     assert found.values["tau"].low < 15e6 < found.values["tau"].high
 

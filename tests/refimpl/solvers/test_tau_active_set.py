@@ -126,9 +126,10 @@ def followed(solver: Played, problem: Problem = ADHESIVE) -> TauResult:
     return iterate(solver, problem, 1e-8)
 
 
-def test_a_law_without_a_jump_holds_everywhere_and_needs_one_solve() -> None:
+@pytest.mark.parametrize("tau", [0.0, 1e-320])
+def test_a_law_without_a_jump_that_moves_any_holds_everywhere_and_needs_one_solve(tau: float) -> None:
     solver = Played({"x" * 16: "x" + 15 * "."})
-    found = followed(solver, problem_of(BALL, 4))
+    found = followed(solver, problem_of(replace(BALL, friction=rf.Friction(tau, BALL.friction.beta)), 4))
     assert (found.settled, found.solves, solver.asked) == (True, 1, ["x" * 16])
     assert not found.excluded.any()
 
