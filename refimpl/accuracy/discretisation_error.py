@@ -53,7 +53,7 @@ PEAK_BIAS, PEAK_BIAS_SPREAD = (
 )  # c0, s_c: the parabola of a pressure peaks too high, over its curvature drop
 _DIVERGED = 1e100  # in SI units; squares are still doubles
 _LEAST_SHARE = 1e-6  # in place of zero
-_WAVES = 1.2  # share of the waviness in the scatter of areas
+_WAVES = 1.5  # share of the waviness in the scatter of areas
 _SLOPES = 2  # power of the share that is not single elements, which divides the scatter of slopes
 
 AREA = Prior(

@@ -48,6 +48,7 @@ class GridFeatures:
     waviness : sum of the pressure's second differences along an axis over that of the pressure
     undecided : area within the contact whose pressure a wave between the elements may take to zero (m^2)
     hardness : Pa, None without one
+    unfilled : contact area less that which carries its pressure at the hardness (m^2)
     loaded : whether the load is prescribed, which then has no discretisation error, or the approach
     """
 
@@ -72,6 +73,7 @@ class GridFeatures:
     waviness: float = 0.0
     undecided: float = 0.0
     hardness: float | None = None
+    unfilled: float = math.inf
     loaded: bool = True
 
     @property
@@ -97,15 +99,19 @@ class GridFeatures:
 
     @property
     def excess_unit(self) -> float:
-        """Area (m^2) of which that is `EDGE_SIZE` in the mean."""
+        """Area (m^2) of which that is `EDGE_SIZE` in the mean.
+
+        Elements at the hardness carry as much as their area can: the excess is at most what others do not.
+        """
         area, face = self.numbers["contact_area"], EDGE_SHARE * self.grid.element_area
-        return excess_unit(
+        unit = excess_unit(
             edge=self.edge,
             straight=self.straight.faces * face,
             border=self.border_fraction * area * EDGE_SHARE,
             yielded=self.numbers.get("plastic_area", 0.0) / area if area else 0.0,
             areas=(area, self.grid.nominal_area - area),
         )
+        return min(unit, self.unfilled / EDGE_SIZE)
 
     @property
     def corrected(self) -> dict[str, float]:
@@ -151,7 +157,10 @@ class GridFeatures:
             highest_areas=highest_areas(state.pressure, grid),
             waviness=waviness(state.pressure, grid),
             undecided=undecided_area(state.pressure, grid),
-            hardness=problem.cap if math.isfinite(problem.cap) else None,
+            hardness=problem.pair.softer_hardness,
+            unfilled=state.contact_area - float(state.pressure.sum()) * grid.element_area / problem.cap
+            if math.isfinite(problem.cap)
+            else math.inf,
             loaded=problem.load is not None,
         )
         return replace(features, numbers=dict(features.numbers) | features.corrected)
