@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from refimpl.model.forces import EDGE_SHARE
 
-EDGE_SIZE, EDGE_SIZE_SPREAD = 0.73, 0.04  # c0, s_c
+EDGE_SIZE, EDGE_SIZE_SPREAD = 0.72, 0.04  # c0, s_c
 OBLONG_SPREAD = 0.09  # s_c per ln(dx / dy): c0 of a ball: 0.75 at 2 : 1, 0.60 at 4 : 1, 0.55 at 8 : 1
 SINGLE_EXCESS = 1.5  # further excess of single elements, in contact or without, over that of an edge
 YIELDED_EXCESS = 0.3  # the like where pressure is at the hardness up to the edge

@@ -57,7 +57,7 @@ _WAVES = 1.5  # share of the waviness in the scatter of areas
 _SLOPES = 2  # power of the share that is not single elements, which divides the scatter of slopes
 
 AREA = Prior(
-    0.16, 6.0
+    0.165, 6.0
 )  # unit: element area times the root of number and symmetry multiplicity of the edge elements
 BULK = Prior(0.003, 1.0)  # friction without tau's share; unit: value (edge / area)^1.5
 PEAK = Prior(0.008, 2.5)  # unit: the peak's curvature drop

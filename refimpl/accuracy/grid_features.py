@@ -48,7 +48,7 @@ class GridFeatures:
     waviness : sum of the pressure's second differences along an axis over that of the pressure
     undecided : area within the contact whose pressure a wave between the elements may take to zero (m^2)
     hardness : Pa, None without one
-    unfilled : contact area less that which carries its pressure at the hardness (m^2)
+    unfilled : contact area less that which carries its pressure at the hardness (m^2), None without a cap
     loaded : whether the load is prescribed, which then has no discretisation error, or the approach
     """
 
@@ -73,7 +73,7 @@ class GridFeatures:
     waviness: float = 0.0
     undecided: float = 0.0
     hardness: float | None = None
-    unfilled: float = math.inf
+    unfilled: float | None = None
     loaded: bool = True
 
     @property
@@ -111,7 +111,7 @@ class GridFeatures:
             yielded=self.numbers.get("plastic_area", 0.0) / area if area else 0.0,
             areas=(area, self.grid.nominal_area - area),
         )
-        return min(unit, self.unfilled / EDGE_SIZE)
+        return unit if self.unfilled is None else min(unit, self.unfilled / EDGE_SIZE)
 
     @property
     def corrected(self) -> dict[str, float]:
@@ -135,7 +135,7 @@ class GridFeatures:
         Approaches of periodic problems do not count from first contact.
         """
         grid, per_area = problem.grid, friction_per_area(problem.friction, state.forces.normal)
-        parts = merged(*stated)
+        parts, total = merged(*stated), float(state.pressure.sum()) * grid.element_area
         features = cls(
             grid=grid,
             numbers=reported_numbers(problem, state),
@@ -158,9 +158,7 @@ class GridFeatures:
             waviness=waviness(state.pressure, grid),
             undecided=undecided_area(state.pressure, grid),
             hardness=problem.pair.softer_hardness,
-            unfilled=state.contact_area - float(state.pressure.sum()) * grid.element_area / problem.cap
-            if math.isfinite(problem.cap)
-            else math.inf,
+            unfilled=None if math.isinf(problem.cap) else state.contact_area - total / problem.cap,
             loaded=problem.load is not None,
         )
         return replace(features, numbers=dict(features.numbers) | features.corrected)
