@@ -92,16 +92,14 @@ def refine_until(
             return Refinement(tuple(results), reason)
         last = longer_side(results[-1])
         remaining = [M for M in remaining if last < M]
-        useful = remaining
-        if exceeds("data", results[-1], accuracy, quantity):
-            useful = [M for M in remaining if finest_by_data >= M]
-            refusal = REMAINING_PARTS["data"]
+        data = REMAINING_PARTS["data"] if exceeds("data", results[-1], accuracy, quantity) else ""
+        useful = [M for M in remaining if not data or finest_by_data >= M]
         if useful and (needed := forecast(results, accuracy, quantity)) > max(useful):
             size = f"about {needed:.2g} elements a side, more than {max(useful)}"
             reason = f"by the bars so far it takes {size}"
-            return Refinement(tuple(results), refusal or reason)
+            return Refinement(tuple(results), data or refusal or reason)
         if not useful:
-            return Refinement(tuple(results), refusal or f"at most {last} elements a side are tried")
+            return Refinement(tuple(results), data or refusal or f"at most {last} elements a side are tried")
         M = next_grid(results, accuracy, quantity, useful)
         try:
             results.append(features_at(M))
