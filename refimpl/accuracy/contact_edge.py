@@ -13,12 +13,10 @@ from refimpl.model.forces import EDGE_SHARE
 
 EDGE_SIZE, EDGE_SIZE_SPREAD = 0.72, 0.04  # c0, s_c
 OBLONG_SPREAD = 0.09  # s_c per ln(dx / dy): c0 of a ball: 0.75 at 2 : 1, 0.60 at 4 : 1, 0.55 at 8 : 1
-SINGLE_EXCESS = 1.5  # further excess of single elements, in contact or without, over that of an edge
-YIELDED_EXCESS = 0.3  # the like where pressure is at the hardness up to the edge
-STRAIGHT_EXCESS = (
-    1.0  # of faces in runs along an axis beyond the third: Westergaard's strips have 0.16 in all
-)
-BORDER_EXCESS = 1.2  # of elements on a free border: they carry too little there, the rest too much
+# further excess over that of an edge: of single elements, in contact or without; where pressure is at the
+# hardness up to the edge; of a run's faces beyond the third (Westergaard's strips: 0.16 of an element in all);
+# and of elements on a free border, which carry too little there
+SINGLE_EXCESS, YIELDED_EXCESS, STRAIGHT_EXCESS, BORDER_EXCESS = 1.5, 0.3, 1.0, 1.2
 
 
 def single_element_share(edge: float, area: float) -> float:

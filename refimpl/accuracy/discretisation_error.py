@@ -48,7 +48,7 @@ PEAK_BIAS, PEAK_BIAS_SPREAD = (
 )  # c0, s_c: the parabola of a pressure peaks too high, over its curvature drop
 _DIVERGED = 1e100  # in SI units; squares are still doubles
 _LEAST_SHARE = 1e-6  # in place of zero
-_WAVES = 1.5  # share of the waviness in the scatter of areas
+_WAVES = 1.5  # scatter of areas over waviness; the likeliest on 1500 scenes is 1.34
 _SLOPES = 2  # power of the share that is not single elements, which divides the scatter of slopes
 
 AREA = Prior(0.165, 6.0)  # unit: `area_scatter`
@@ -59,8 +59,8 @@ OTHER = Prior(0.02, 2.0)  # unit: value (edge / area)^1.5
 # 95 %: approach of a contact that ends at a free border, over depth and border fraction; full contacts of
 # squares and of 2 : 1 on 32 to 256 elements are 0.083 to 0.086 from their limit
 BORDER_BOUND = 0.13
-# of `slope_scatter`: 95 % of a single grid's mu lie within 2.5 of it; of 189 grids where it matters 97 % are
-# within 1.5, and 1.4 are the standard error where slopes of neighbours are unrelated
+# scatter of mu over `slope_scatter`: 95 % of a single grid are 2.5 of it; of 189 grids where it matters 97 %
+# are within 1.5, and 1.4 are the standard error where slopes of neighbours are unrelated
 SLOPE_SHARE = 0.2
 # standard deviation of mu by slopes under that pressure, over border fraction and rms slope: the errors there
 BORDER_SLOPES = 0.1
