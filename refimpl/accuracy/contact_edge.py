@@ -13,9 +13,9 @@ from refimpl.model.forces import EDGE_SHARE
 
 EDGE_SIZE, EDGE_SIZE_SPREAD = 0.72, 0.04  # c0, s_c
 OBLONG_SPREAD = 0.09  # s_c per ln(dx / dy): c0 of a ball: 0.75 at 2 : 1, 0.60 at 4 : 1, 0.55 at 8 : 1
-# further excess over that of an edge: of single elements, in contact or without; where pressure is at the
-# hardness up to the edge; of a run's faces beyond the third (Westergaard's strips: 0.16 of an element in all);
-# and of elements on a free border, which carry too little there
+# further excess over that of an edge, where elements stand alone, in contact or without; where pressure is at
+# the hardness up to the edge; beyond the third face of a run along an axis (Westergaard's strips: 0.16 of an
+# element in all); where a free border cuts the contact off, which carries too little there
 SINGLE_EXCESS, YIELDED_EXCESS, STRAIGHT_EXCESS, BORDER_EXCESS = 1.5, 0.3, 1.0, 1.2
 
 
