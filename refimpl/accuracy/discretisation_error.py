@@ -138,7 +138,8 @@ def _estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
     grids = _Grids([at_first_contact(result) for result in results])
     area, load = _area(grids), grids.finest("normal_force")
     dmu_dA = grids.each(lambda result: result.dmu_dA)
-    across = grids.edge_scatter * load, slope_scatter(grids.results) * load
+    slopes = slope_scatter(grids.results), grids.each(border_slopes)
+    across = [size * load for size in (grids.edge_scatter, *slopes)]
     found = {
         "friction_coefficient": _sheared(grids, "friction_coefficient", area, dmu_dA, 1.0),
         "friction_force": _sheared(grids, "friction_force", area, dmu_dA * grids.found("normal_force"), load),
@@ -167,7 +168,8 @@ def _sheared(grids: _Grids, name: str, area: Estimate, share: Array, unit: float
     """A number that contains ``share`` times the contact area, and slopes times ``unit``."""
     values = grids.found(name) - share * grids.found("contact_area")
     slopes = SLOPE_SHARE * slope_scatter(grids.results) * unit
-    rest = grids.smooth(values, BULK, grids.edge_scatter * grids.finest(name), slopes)
+    by_border = grids.each(border_slopes) * unit
+    rest = grids.smooth(values, BULK, grids.edge_scatter * grids.finest(name), slopes, by_border)
     per_area = float(share[-1])
     return Estimate(rest.value + per_area * area.value, rest.half_width).widened(per_area * area.half_width)
 
@@ -213,17 +215,18 @@ def edge_scatter(results: Sequence[GridFeatures]) -> Array:
 
 
 def slope_scatter(results: Sequence[GridFeatures]) -> Array:
-    """Return how far slopes within elements, and under a pressure that the border cuts off, leave mu open.
-
-    Where patches are single elements that is all of mu.
-    """
+    """Return how far slopes within elements leave mu open: all of it where patches are single elements."""
     uneven = np.array([result.slope_sampling_error for result in results])
     whole = abs(results[-1].numbers["friction_coefficient"])
     single = np.array([single_element_share(r.edge, r.numbers["contact_area"]) for r in results])
     resolved = np.maximum(1 - single**2, _LEAST_SHARE) ** _SLOPES
-    wider = np.maximum(uneven, np.minimum(uneven / resolved, whole))
-    scatter: Array = np.hypot(wider, [BORDER_SLOPES * r.border_fraction * r.rms_slope for r in results])
+    scatter: Array = np.maximum(uneven, np.minimum(uneven / resolved, whole))
     return scatter
+
+
+def border_slopes(result: GridFeatures) -> float:
+    """Return how far slopes under a pressure that a free border cuts off leave mu open."""
+    return BORDER_SLOPES * result.border_fraction * result.rms_slope
 
 
 def _weights(size: Array, spacing: Array) -> Array:
