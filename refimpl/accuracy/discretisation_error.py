@@ -2,27 +2,22 @@
 
 Each number is the intercept q of a line over the grids (`bayesian_line`), ``y_k = q + c e_k + r_k``.
 
-- Areas: ``e_k`` is the excess of whole elements along the contact's edge (Yastrebov, Anciaux and Molinari
-  2017), and ``r_k`` depends on which elements the edge happens to contain: the count of n edge elements
-  varies as sqrt(n), and n as 1 / h, so its scatter falls as h^(3/2). Elements of a straight edge along the
-  grid come in and out together (`straight_edges`): each edge varies by its whole length. Friction takes its
-  edge's share from the area, by ``tau / N``.
+- Areas: ``e_k`` is the excess of whole elements along the contact's edge (`contact_edge`), and ``r_k``
+  depends on which elements the edge happens to contain: the count of n edge elements varies as sqrt(n), and n
+  as 1 / h, so its scatter falls as h^(3/2). Elements of an edge along small whole numbers come in and out
+  together (`straight_edges`). Friction takes its edge's share from the area, by ``tau / N``.
 - Maximum pressure: that of a parabola through the peak, with its curvature drop for ``e_k`` (`peak`).
   Approaches count from first contact, which is a peak as well (`first_contact`).
 - Where the bodies differ, tau on whole elements displaces more than tau on the contact; this falls as h only
   (`SHEAR_BOUNDS`).
 - Approaches: by the border of a free domain, where the pressure of a contact that is cut off is singular as
   under a punch (`BORDER_BOUND`, order h), and by the differences that slopes are (`SLOPE_BOUND`, order h^2).
-- The scatter of every other number comes from the grids themselves: from the edge fraction of the contact,
-  and from how slopes bend from element to element. These fall as powers of h where a surface is resolved.
-  Where it is not they do not fall, and the bars stay wide. Where elements with half of the maximum pressure
-  stand alone, nothing bounds it; where patches are single elements, only the number itself bounds area and
-  friction.
+- Every other number scatters as powers of the edge fraction, and as slopes bend from element to element.
+  Where waves of pressure or slopes are shorter than elements, bars stay wide. Where elements with half of the
+  maximum pressure stand alone, nothing bounds it.
 
-The priors were fitted to random scenes of a training set (`verification.coverage`: seeds 1000 to 1199; by
-likelihood, `verification/coverage/priors.py` at 43108c8); their coverage was judged on the scenes of other
-seeds. How bars widen where nothing is resolved was chosen on surfaces of noise and on measured ones as well
-(`test_estimates.py`).
+The priors were fitted to random scenes (`verification.coverage`: seeds 1000 to 1199, `contact_edge`); their
+coverage was judged on the scenes of other seeds.
 """
 
 from __future__ import annotations
@@ -46,19 +41,17 @@ from refimpl.accuracy.iteration_error import CORRECTED
 from refimpl.grid import Array
 from refimpl.model.forces import EDGE_SHARE
 
-STRAIGHT_SCATTER = 0.21  # standard deviation over a step: Westergaard's strips along ten directions: 0.17 to 0.22
+STRAIGHT_SCATTER = 0.21  # standard deviation over a step; Westergaard's strips: 0.17 to 0.22
 PEAK_BIAS, PEAK_BIAS_SPREAD = (
     0.028,
     0.009,
 )  # c0, s_c: the parabola of a pressure peaks too high, over its curvature drop
 _DIVERGED = 1e100  # in SI units; squares are still doubles
 _LEAST_SHARE = 1e-6  # in place of zero
-_WAVES = 1.2  # share of the waviness in the scatter of areas
+_WAVES = 1.5  # scatter of areas over waviness; the likeliest on 1500 scenes is 1.34
 _SLOPES = 2  # power of the share that is not single elements, which divides the scatter of slopes
 
-AREA = Prior(
-    0.16, 6.0
-)  # unit: element area times the root of number and symmetry multiplicity of the edge elements
+AREA = Prior(0.165, 6.0)  # unit: `area_scatter`
 BULK = Prior(0.003, 1.0)  # friction without tau's share; unit: value (edge / area)^1.5
 PEAK = Prior(0.008, 2.5)  # unit: the peak's curvature drop
 BINORMAL = Prior(0.0002, 1.0)  # unit: normal force (edge / area)^1.5
@@ -66,8 +59,8 @@ OTHER = Prior(0.02, 2.0)  # unit: value (edge / area)^1.5
 # 95 %: approach of a contact that ends at a free border, over depth and border fraction; full contacts of
 # squares and of 2 : 1 on 32 to 256 elements are 0.083 to 0.086 from their limit
 BORDER_BOUND = 0.13
-# of `slope_scatter`: 95 % of a single grid's mu lie within 2.5 of it; of 189 grids where it matters 97 % are
-# within 1.5, and 1.4 are the standard error where slopes of neighbours are unrelated
+# scatter of mu over `slope_scatter`: 95 % of a single grid are 2.5 of it; of 189 grids where it matters 97 %
+# are within 1.5, and 1.4 are the standard error where slopes of neighbours are unrelated
 SLOPE_SHARE = 0.2
 # standard deviation of mu by slopes under that pressure, over border fraction and rms slope: the errors there
 BORDER_SLOPES = 0.1
@@ -145,7 +138,8 @@ def _estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
     grids = _Grids([at_first_contact(result) for result in results])
     area, load = _area(grids), grids.finest("normal_force")
     dmu_dA = grids.each(lambda result: result.dmu_dA)
-    across = grids.edge_scatter * load, slope_scatter(grids.results) * load
+    slopes = slope_scatter(grids.results), grids.each(border_slopes)
+    across = [size * load for size in (grids.edge_scatter, *slopes)]
     found = {
         "friction_coefficient": _sheared(grids, "friction_coefficient", area, dmu_dA, 1.0),
         "friction_force": _sheared(grids, "friction_force", area, dmu_dA * grids.found("normal_force"), load),
@@ -174,7 +168,8 @@ def _sheared(grids: _Grids, name: str, area: Estimate, share: Array, unit: float
     """A number that contains ``share`` times the contact area, and slopes times ``unit``."""
     values = grids.found(name) - share * grids.found("contact_area")
     slopes = SLOPE_SHARE * slope_scatter(grids.results) * unit
-    rest = grids.smooth(values, BULK, grids.edge_scatter * grids.finest(name), slopes)
+    by_border = grids.each(border_slopes) * unit
+    rest = grids.smooth(values, BULK, grids.edge_scatter * grids.finest(name), slopes, by_border)
     per_area = float(share[-1])
     return Estimate(rest.value + per_area * area.value, rest.half_width).widened(per_area * area.half_width)
 
@@ -220,17 +215,18 @@ def edge_scatter(results: Sequence[GridFeatures]) -> Array:
 
 
 def slope_scatter(results: Sequence[GridFeatures]) -> Array:
-    """Return how far slopes within elements, and under a pressure that the border cuts off, leave mu open.
-
-    Where patches are single elements that is all of mu.
-    """
+    """Return how far slopes within elements leave mu open: all of it where patches are single elements."""
     uneven = np.array([result.slope_sampling_error for result in results])
     whole = abs(results[-1].numbers["friction_coefficient"])
     single = np.array([single_element_share(r.edge, r.numbers["contact_area"]) for r in results])
     resolved = np.maximum(1 - single**2, _LEAST_SHARE) ** _SLOPES
-    wider = np.maximum(uneven, np.minimum(uneven / resolved, whole))
-    scatter: Array = np.hypot(wider, [BORDER_SLOPES * r.border_fraction * r.rms_slope for r in results])
+    scatter: Array = np.maximum(uneven, np.minimum(uneven / resolved, whole))
     return scatter
+
+
+def border_slopes(result: GridFeatures) -> float:
+    """Return how far slopes under a pressure that a free border cuts off leave mu open."""
+    return BORDER_SLOPES * result.border_fraction * result.rms_slope
 
 
 def _weights(size: Array, spacing: Array) -> Array:
@@ -260,13 +256,10 @@ def discretisation(results: Sequence[GridFeatures]) -> dict[str, dict[str, float
 
 
 def _area(grids: _Grids) -> Estimate:
-    """Contact area: the excess along the edge is a regressor, and the scatter is that of a count.
-
-    Single elements have a larger bias: on finer grids less of their area remains. The likeliest excess is 1
-    on the training scenes, 1.5 to 2 on surfaces of noise and on measured ones.
-    """
+    """Contact area: the excess along the edge is a regressor, and the scatter is that of a count."""
     fine = grids.results[-1]
-    spread = math.hypot(EDGE_SIZE_SPREAD * math.hypot(1.0, _WAVES * fine.waviness), OBLONG_SPREAD * math.log(fine.grid.aspect))
+    waves, oblong = math.hypot(1.0, _WAVES * fine.waviness), math.log(fine.grid.aspect)
+    spread = math.hypot(EDGE_SIZE_SPREAD * waves, OBLONG_SPREAD * oblong)
     bias = Bias(grids.each(lambda result: result.excess_unit), EDGE_SIZE, spread)
     return grids.smooth(grids.found("contact_area"), AREA, grids.each(area_scatter), bias=bias)
 
@@ -281,9 +274,9 @@ def _plastic_area(fine: GridFeatures) -> Estimate:
 
 
 def area_scatter(result: GridFeatures) -> float:
-    """Return the unit of the area's scatter (m^2): the root of a count, of edge elements and undecided ones.
+    """Return the unit of the area's scatter (m^2): the root of a count of edge elements and undecided ones.
 
-    Symmetric ones come in and out together, and short waves of the pressure add as much by themselves.
+    Symmetric ones come in and out together, and short waves of the pressure add to that.
     """
     elements = max(result.edge, 0.0) / EDGE_SHARE + result.undecided
     together = result.symmetry_multiplicity + (_WAVES * result.waviness) ** 2

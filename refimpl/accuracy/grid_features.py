@@ -8,7 +8,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from refimpl.accuracy.contact_edge import EDGE_SIZE, excess_unit
+from refimpl.accuracy.contact_edge import (
+    BORDER_EXCESS,
+    EDGE_SIZE,
+    SINGLE_EXCESS,
+    STRAIGHT_EXCESS,
+    YIELDED_EXCESS,
+    single_element_share,
+)
 from refimpl.accuracy.iteration_error import CORRECTED, merged, reported_numbers
 from refimpl.accuracy.peak import NO_PEAK, Peak, deepest, highest
 from refimpl.grid import Array, Grid, inner, second_differences
@@ -48,6 +55,7 @@ class GridFeatures:
     waviness : sum of the pressure's second differences along an axis over that of the pressure
     undecided : area within the contact whose pressure a wave between the elements may take to zero (m^2)
     hardness : Pa, None without one
+    unfilled : contact area less that which carries its pressure at the hardness (m^2), None without a cap
     loaded : whether the load is prescribed, which then has no discretisation error, or the approach
     """
 
@@ -72,6 +80,7 @@ class GridFeatures:
     waviness: float = 0.0
     undecided: float = 0.0
     hardness: float | None = None
+    unfilled: float | None = None
     loaded: bool = True
 
     @property
@@ -97,15 +106,19 @@ class GridFeatures:
 
     @property
     def excess_unit(self) -> float:
-        """Area (m^2) of which that is `EDGE_SIZE` in the mean."""
+        """Area (m^2) of which that is `EDGE_SIZE` in the mean.
+
+        Elements at the hardness carry as much as their area can: the excess is at most what others do not.
+        """
         area, face = self.numbers["contact_area"], EDGE_SHARE * self.grid.element_area
-        return excess_unit(
-            edge=self.edge,
-            straight=self.straight.faces * face,
-            border=self.border_fraction * area * EDGE_SHARE,
-            yielded=self.numbers.get("plastic_area", 0.0) / area if area else 0.0,
-            areas=(area, self.grid.nominal_area - area),
-        )
+        if not area > 0:
+            return 0.0
+        gap, single = self.grid.nominal_area - area, single_element_share
+        around = 1 + SINGLE_EXCESS * (single(self.edge, area) ** 2 + single(self.edge, gap) ** 2)
+        around += YIELDED_EXCESS * self.numbers.get("plastic_area", 0.0) / area
+        border = BORDER_EXCESS * self.border_fraction * area * max(gap, 0.0) / self.grid.nominal_area
+        unit = around * self.edge + STRAIGHT_EXCESS * self.straight.faces * face + EDGE_SHARE * border
+        return unit if self.unfilled is None else min(unit, self.unfilled / EDGE_SIZE)
 
     @property
     def corrected(self) -> dict[str, float]:
@@ -129,7 +142,7 @@ class GridFeatures:
         Approaches of periodic problems do not count from first contact.
         """
         grid, per_area = problem.grid, friction_per_area(problem.friction, state.forces.normal)
-        parts = merged(*stated)
+        parts, total = merged(*stated), float(state.pressure.sum()) * grid.element_area
         features = cls(
             grid=grid,
             numbers=reported_numbers(problem, state),
@@ -151,7 +164,8 @@ class GridFeatures:
             highest_areas=highest_areas(state.pressure, grid),
             waviness=waviness(state.pressure, grid),
             undecided=undecided_area(state.pressure, grid),
-            hardness=problem.cap if math.isfinite(problem.cap) else None,
+            hardness=problem.pair.softer_hardness,
+            unfilled=None if math.isinf(problem.cap) else state.contact_area - total / problem.cap,
             loaded=problem.load is not None,
         )
         return replace(features, numbers=dict(features.numbers) | features.corrected)
@@ -193,9 +207,9 @@ def waviness(pressure: Array, grid: Grid) -> float:
 
 
 def undecided_area(pressure: Array, grid: Grid) -> float:
-    """Return the area (m^2) of elements amid the contact with less pressure than half of its second difference.
+    """Return the area (m^2) of elements amid the contact with a pressure below half its second difference.
 
-    Between such an element and its neighbours the pressure may reach zero; a finer grid may open a gap there.
+    Beside such an element the pressure may reach zero, and a finer grid may open a gap.
 
     >>> pressure = 1.0 - np.cos(np.pi * np.arange(8) / 4 + 0.1)[:, None] * np.ones(8)
     >>> undecided_area(pressure, Grid.square(8.0, 8, periodic=True))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 from refimpl.accuracy.discretisation_error import discretisation, estimates
 from refimpl.accuracy.grid_features import GridFeatures
@@ -23,18 +23,13 @@ Quantity = Literal[
     "contact_area_corrected",
     "max_pressure",
 ]
-QUANTITIES: tuple[Quantity, ...] = (
-    "friction_coefficient_corrected",
-    "friction_coefficient",
-    "contact_area",
-    "contact_area_corrected",
-    "max_pressure",
-)
+QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 
 FIRST_GRIDS = (32, 64)  # elements along the longer side
 GRID_SIZES = (*(quarter * 2**k for k in range(4, 10) for quarter in (5, 6, 7, 8)), 4096)
 MAX_REFINEMENT = 8  # next grid over the last: predictions from two coarse grids are poor beyond
-MAX_BLIND_REFINEMENT = 2  # ratio where the bar is longer than the number, and predicts nothing
+MAX_BLIND_REFINEMENT = 2  # ratio where the bar predicts nothing: longer than the number, or of short waves
+_SHORT_WAVES = 0.5  # waviness from which bars fall faster than they predict, as waves are resolved
 LEAST_ORDER, MOST_ORDER = 1.0, 2.0  # orders of a bar in element size that a forecast takes
 _MARGIN = 0.95  # share of the accuracy that a predicted bar may take
 _ITERATION_SHARE = 1e-3  # share of the accuracy that unfinished iterations may take
@@ -97,16 +92,14 @@ def refine_until(
             return Refinement(tuple(results), reason)
         last = longer_side(results[-1])
         remaining = [M for M in remaining if last < M]
-        useful = remaining
-        if exceeds("data", results[-1], accuracy, quantity):
-            useful = [M for M in remaining if finest_by_data >= M]
-            refusal = refusal if useful else REMAINING_PARTS["data"]
+        data = REMAINING_PARTS["data"] if exceeds("data", results[-1], accuracy, quantity) else ""
+        useful = [M for M in remaining if not data or finest_by_data >= M]
         if useful and (needed := forecast(results, accuracy, quantity)) > max(useful):
             size = f"about {needed:.2g} elements a side, more than {max(useful)}"
             reason = f"by the bars so far it takes {size}"
-            return Refinement(tuple(results), refusal or reason)
+            return Refinement(tuple(results), data or refusal or reason)
         if not useful:
-            return Refinement(tuple(results), refusal or f"at most {last} elements a side are tried")
+            return Refinement(tuple(results), data or refusal or f"at most {last} elements a side are tried")
         M = next_grid(results, accuracy, quantity, useful)
         try:
             results.append(features_at(M))
@@ -137,7 +130,8 @@ def next_grid(
 ) -> int:
     """Return the coarsest size whose predicted bar is short enough, within reach of the last grid."""
     fine = results[-1]
-    predictable = estimates(results)[quantity].half_width < abs(fine.numbers[quantity])
+    within = estimates(results)[quantity].half_width < abs(fine.numbers[quantity])
+    predictable = within and fine.waviness < _SHORT_WAVES
     ratio = MAX_REFINEMENT if predictable else MAX_BLIND_REFINEMENT
     reach = [size for size in grid_sizes if size <= ratio * longer_side(fine)] or grid_sizes[:1]
     return predicted_size(results, accuracy, quantity, reach) or reach[-1]
@@ -180,11 +174,13 @@ REMAINING_PARTS = {
 
 
 def no_longer_falls(part: str, results: Sequence[GridFeatures], accuracy: float, quantity: str) -> bool:
-    """Return whether a part leaves more than the accuracy open, and no less than on the grid before."""
+    """Return whether a part leaves more than the accuracy open, no less than on the grid before, and most of
+    all that is open."""
     if len(results) == len(FIRST_GRIDS):
         return False
     coarse, fine = (result.parts.get(quantity, {}).get(part, 0.0) for result in results[-2:])
-    return fine >= coarse and exceeds(part, results[-1], accuracy, quantity)
+    most = 2 * fine >= sum(uncertainty(results)[quantity].values())
+    return fine >= coarse and most and exceeds(part, results[-1], accuracy, quantity)
 
 
 def exceeds(part: str, result: GridFeatures, accuracy: float, quantity: str) -> bool:

@@ -78,8 +78,8 @@ def straight_edges(contact: Mask, grid: Grid) -> StraightEdges:
 class _Runs:
     """Runs along v of faces between an element and the one at w from it, by first and last position s.
 
-    ``side`` is 0 where the element itself is in contact, 1 where the other is. Lines and positions close: a run
-    may begin before position 0. ``keys`` of all faces rise, ``run_of`` is the run of each.
+    ``side`` is 0 where the element itself is in contact, 1 where the other is. Lines close: a run may begin
+    before position 0. ``keys`` of all faces rise, ``run_of`` is the run of each.
     """
 
     lines: int
@@ -106,7 +106,9 @@ class _Runs:
         line, side, first, last = first // 2 // count, first % 2, first // 2 % count, last // 2 % count
         # a run at the end of a line goes on at its beginning
         heads, tails = (np.flatnonzero(np.diff(line, **{end: -1})) for end in ("prepend", "append"))
-        joined = (first[heads] == 0) & (last[tails] == count - 1) & (side[heads] == side[tails]) & (heads < tails)
+        joined = (
+            (first[heads] == 0) & (last[tails] == count - 1) & (side[heads] == side[tails]) & (heads < tails)
+        )
         heads, tails = heads[joined], tails[joined]
         first[heads] = first[tails] - count
         kept, to = np.ones(line.size, dtype=bool), np.arange(line.size)
@@ -132,7 +134,7 @@ class _Runs:
         return np.where(self.length == self.count, self.length, np.maximum(self.length - other, 0))
 
     def excess(self, across: _Runs) -> Indices:
-        """Return how far each run is longer than those at its ends: of the lines beside it, and ``across``."""
+        """Return how far each run is longer than those at its ends: on the lines beside it, or ``across``."""
         long = np.flatnonzero(self.length >= _SHORTEST)
         line, side, ends = self.line[long], self.side[long], self.length.copy()
         ends[long] = 0

@@ -72,7 +72,8 @@ def reference(finest: rf.Solution, name: str) -> tuple[float, float]:
     features: GridFeatures = finest.features
     value = float(getattr(finest, name))
     bound = math.hypot(
-        EDGE_SIZE_BOUND * features.edge, 0.5 * math.sqrt(features.straight.squares) * features.grid.element_area
+        EDGE_SIZE_BOUND * features.edge,
+        0.5 * math.sqrt(features.straight.squares) * features.grid.element_area,
     )
     if name == "contact_area":
         return value - features.excess, bound

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.accuracy.iteration_error import CORRECTED, iteration_parts
 from refimpl.accuracy.contact_edge import EDGE_SIZE
+from refimpl.accuracy.iteration_error import CORRECTED, iteration_parts
 from refimpl.accuracy.refinement import FIRST_GRIDS
 from refimpl.solution.cost import total_cost
 from refimpl.solution.solution import REPORTED

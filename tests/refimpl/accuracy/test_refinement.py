@@ -98,6 +98,17 @@ def test_what_the_active_set_of_tau_leaves_open_ends_the_refinement_unless_finer
     assert (relative_bound(found.results, "max_pressure") <= 0.01) is (power < 0)
 
 
+def test_an_active_set_that_leaves_less_open_than_the_grid_does_not_end_the_refinement() -> None:
+    """0.6 % on all grids where 0.5 % is asked for: grids are refined until the rest of the bar is less."""
+
+    def result_at(M: int) -> GridFeatures:
+        return replace(made_up(M), parts={"contact_area": {"active set": 0.006 * AREA_LIMIT}})
+
+    found = refine_until(result_at, 0.005, "contact_area", grid_sizes=(80, 640))
+    assert "tau's active set" in found.refusal
+    assert [result.grid.shape[0] for result in found.results] == [32, 64, 80, 640]
+
+
 @pytest.mark.parametrize(("share", "finest"), [(0.02, 384), (0.005, 2048)])
 def test_data_that_leave_more_open_than_the_accuracy_end_at_four_elements_between_their_points(
     share: float, finest: int
