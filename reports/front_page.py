@@ -10,9 +10,9 @@ from typing import Any
 from reports.agreement import Number, by_quantity, fine, ratio_and_scatter
 from reports.claims import VERDICTS, Judged, of_the_conversion
 from reports.evidence import Evidence
+from reports.result_tables.accuracy import JUDGED
 from reports.results import Case
 from reports.studies.experiments import sentences
-from reports.result_tables.accuracy import JUDGED
 from reports.text import number, unit_of
 
 HERTZ = {

@@ -123,7 +123,13 @@ NUMBERS = [
     Number("Table 3", "A, Table 3", "σ_e 0 µm, 256²", "mm²", 0.5, 0.9, 0.0, 0.0005),
 ]
 COVERED = [
-    {"class": kind, "number": name, "scenes": 300, "held": 0.9 + 0.011 * k, "median_bar_over_error": 1.234 + k}
+    {
+        "class": kind,
+        "number": name,
+        "scenes": 300,
+        "held": 0.9 + 0.011 * k,
+        "median_bar_over_error": 1.234 + k,
+    }
     for k, name in enumerate(("friction_coefficient_corrected", "contact_area", "max_pressure", "approach"))
     for kind in (None, "flat")
 ]
