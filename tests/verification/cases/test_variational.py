@@ -18,7 +18,6 @@ from verification.cases.solvers.variational import (
     PRINTED_HOURS,
     Contact,
     Energy,
-    approach_under_load,
     growth,
     table2_scene,
     timed,
@@ -42,9 +41,7 @@ def by_enumeration(A: np.ndarray, depth: np.ndarray) -> np.ndarray:
     raise AssertionError("no support is complementary")
 
 
-@pytest.mark.parametrize(
-    ("name", "tolerance"), [("NNLS", 1e-13), ("L-BFGS-B", 1e-5), ("interior point", 1e-10)]
-)
+@pytest.mark.parametrize(("name", "tolerance"), [("NNLS", 1e-13), ("L-BFGS-B", 1e-5)])
 def test_minimisers_against_enumeration(name: str, tolerance: float) -> None:
     """Tolerances as in the cases, with fewer unknowns."""
     small = Energy.on(5, APPROACH)
@@ -72,19 +69,6 @@ def test_no_element_outside_the_interference_is_loaded() -> None:
     assert len(everywhere.depth) == 144 > len(energy.depth)
     whole, part = (e.pressure(MINIMISERS["NNLS"](e)) for e in (everywhere, energy))
     assert np.abs(whole - part).max() <= 1e-12 * whole.max()
-
-
-def test_load_constraint_finds_the_approach() -> None:
-    reference = rf.solve(table2_scene(), grid=16, method="dense", oblique=False)
-    for assumed in (1.05, 1.5):
-        found = approach_under_load(Energy.on(16, assumed * reference.approach), load=70.0)
-        assert found == pytest.approx(reference.approach, rel=1e-8)
-
-
-def test_an_interior_point_that_does_not_end_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(variational, "_INTERIOR_STEPS", 3)
-    with pytest.raises(RuntimeError, match="does not end in 3 steps"):
-        MINIMISERS["interior point"](Energy.on(5, APPROACH))
 
 
 @pytest.fixture
