@@ -19,7 +19,6 @@ from verification.cases.solvers.variational import (
     Contact,
     Energy,
     growth,
-    table2_scene,
     timed,
 )
 from verification.framework.case import Status
