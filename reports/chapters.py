@@ -70,7 +70,7 @@ CHAPTERS = (
         "finer grids, sensitivities, and budgets after V&V 20. Identification of tau and beta from measured "
         "friction: coverage of its intervals, and effects of wrong input.",
         ("accuracy", "sensitivity", "identification"),
-        ("coverage", "coverage_fresh", "coverage_classes"),
+        ("coverage_corrected",),
     ),
     Chapter(
         "yield",

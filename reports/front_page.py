@@ -10,9 +10,10 @@ from typing import Any
 from reports.agreement import Number, by_quantity, fine, ratio_and_scatter
 from reports.claims import VERDICTS, Judged, of_the_conversion
 from reports.evidence import Evidence
+from reports.result_tables.accuracy import JUDGED
 from reports.results import Case
 from reports.studies.experiments import sentences
-from reports.text import QUANTITIES, number, unit_of
+from reports.text import number, unit_of
 
 HERTZ = {
     "hertz/peak-pressure": "peak pressure",
@@ -102,20 +103,15 @@ def _quantity(name: str, group: Sequence[Number]) -> tuple[str, int, str, str, i
 
 
 def _coverage(studies: Mapping[str, Any]) -> list[str]:
-    """Coverage of error bars of mu, A and p_max at 1 %, on both samples of random scenes."""
-    said = []
-    for name in ("friction_coefficient", "contact_area", "max_pressure"):
-        found = [
-            judged["numbers"][name]
-            for study in ("coverage", "coverage_fresh")
-            for judged in studies.get(study, {}).get("accuracies", ())
-            if judged["accuracy"] == 0.01
-        ]
-        if found:
-            covered = " and ".join(f"{100 * f['covered']:.0f} %" for f in found)
-            longer = " and ".join(number(f["median_bar_over_error"], 2) for f in found)
-            said.append(f"{QUANTITIES[name]} in {covered} ({longer} times the error)")
-    samples = "95 % error bars at an accuracy of 1 % hold far finer solutions, on two samples of scenes"
+    """Coverage of error bars over all classes of random scenes."""
+    table = studies.get("coverage_corrected", {}).get("table", ())
+    said = [
+        f"{JUDGED[row['number']]} in {100 * row['held']:.0f} % of {row['scenes']} "
+        f"({number(row['median_bar_over_error'], 2)} times the error)"
+        for row in table
+        if row["class"] is None and row["number"] in JUDGED
+    ]
+    samples = "95 % error bars of single grids hold far finer solutions of random scenes"
     return [f"{samples}: {'; '.join(said)}"] if said else []
 
 

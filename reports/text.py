@@ -7,13 +7,6 @@ import re
 
 from reports.results import Case
 
-QUANTITIES = {
-    "friction_coefficient": "μ",
-    "contact_area": "A",
-    "contact_area_corrected": "A, perimeter-corrected",
-    "max_pressure": "p_max",
-}
-"""Symbols of a solution's numbers."""
 _UNITS = {"Pa": ("MPa", 1e-6), "m": ("µm", 1e6)}
 _SYMBOLS = (
     (re.compile(r"\bsigma_e\b"), "σ_e"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import json
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -90,6 +91,7 @@ def test_every_subcommand_runs_without_what_only_posix_has(tmp_path: Path) -> No
     for name, text in files.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     (tmp_path / "committed").mkdir()
+    shutil.copy(ROOT / "docs/scene-file.md", tmp_path / "keys.md")
     if find_spec("SurfaceTopography"):
         write_x3p(tmp_path / "a.x3p", ROUGH)
     else:  # not built for every system

@@ -122,10 +122,19 @@ NUMBERS = [
     Number("Table 3", "A, Table 3", "σ_e 0 µm, 512²", "mm²", 0.5, 0.5004, 0.0, 0.0005),
     Number("Table 3", "A, Table 3", "σ_e 0 µm, 256²", "mm²", 0.5, 0.9, 0.0, 0.0005),
 ]
-COVERED = {name: {"covered": 0.9 + 0.011 * k, "median_bar_over_error": 1.234 + k} for k, name in
-           enumerate(("friction_coefficient", "contact_area", "max_pressure"))}  # fmt: skip
+COVERED = [
+    {
+        "class": kind,
+        "number": name,
+        "scenes": 300,
+        "held": 0.9 + 0.011 * k,
+        "median_bar_over_error": 1.234 + k,
+    }
+    for k, name in enumerate(("friction_coefficient_corrected", "contact_area", "max_pressure", "approach"))
+    for kind in (None, "flat")
+]
 STUDIES: dict[str, Any] = {
-    "coverage": {"accuracies": [{"accuracy": 0.02, "numbers": {}}, {"accuracy": 0.01, "numbers": COVERED}]},
+    "coverage_corrected": {"table": COVERED},
     "extremes": {"counts": {"right": 5, "wrong": 1, "crash": 2, "honest failure": 3}},
 }
 
@@ -145,6 +154,6 @@ def test_the_first_page_by_hand() -> None:
     assert found.hertz == ["approach 2.5 for 2.4 µm (4.2e-02)"]
     assert found.quantities == [("μ, Table 3", 1, "1.100", "", 0), ("A, Table 3", 1, "1.001", "", 1)]
     bars, extremes = found.trust
-    for text in ("μ in 90 % (1.2 times the error)", "A in 91 % (2.2 times", "p_max in 92 % (3.2 times"):
+    for text in ("μ in 90 % of 300 (1.2 times the error)", "A in 91 % of", "p_max in 92 % of 300 (3.2 times"):
         assert text in bars
     assert extremes.startswith("1 of 11 extreme inputs gave a wrong answer, 2 a crash, and 3 a status")

@@ -10,7 +10,6 @@ import pytest
 from reports.drawing import svg
 from reports.exhibit import as_csv
 from reports.generator import render
-from reports.result_files import committed
 from reports.results import ResultFileError
 from reports.studies import exhibit
 from reports.studies.experiments import sentences
@@ -24,13 +23,6 @@ class Names(dict[str, Any]):
         return key
 
 
-FOUND = {"scenes": 9, "met": 0.91, "covered": 0.82, "covered_at_worst": 0.73, "median_bar_over_error": 2.345,
-         "median_cost": 1.234, "cost_at_most_2": 0.64, "median_bar": 0.056}  # fmt: skip
-JUDGED = {"accuracy": 0.02, "numbers": {"contact_area": FOUND}, "verdicts": {},
-          "classes": {"flat": {"a": FOUND, "b": {"scenes": 0}, "c": FOUND, "d": FOUND}}}  # fmt: skip
-COVERAGE = Names(accuracies=[JUDGED], seeds=[3, 12], reference_check={"seeds": []},
-                 solves={"count": 55, "seconds": 600, "worst_residual": 2e-9,
-                         "worst_apart": 3e-7})  # fmt: skip
 BARS = Names(held=0.951, held_at_worst=0.902, usable=0.83, held_of_usable=None, p=0.0123,
              median_bar_over_error=None)  # fmt: skip
 OTHERS = BARS | {"class": None, "number": None, "scenes": 7, "held_of_usable": 0.8,
@@ -117,8 +109,7 @@ BENCHMARKS = {"runs": [run(128, 1.0, 2.0), run(256, 2.0, 6.0), run(128, 1.0, 4.0
 DOCUMENTS: dict[str, Any] = {
     "accuracy_costs": {"classes": [Names(prices=OFFERS)]},
     "benchmarks": BENCHMARKS,
-    "coverage": COVERAGE,
-    "coverage_classes": {"table": [BARS, OTHERS]},
+    "coverage_corrected": {"table": [BARS, OTHERS]},
     "cross_code": CODES,
     "experiments": {"experiments": EXPERIMENTS},
     "extremes": EXTREMES,
@@ -126,9 +117,7 @@ DOCUMENTS: dict[str, Any] = {
 }
 ROWS: list[tuple[str, int, list[Any]]] = [
     ("accuracy_costs", 0, [("class", "mu", "48 (1.23)", "finer")]),
-    ("coverage", 0, [("A", 0.02, 9, 91.0, 82.0, 73.0, 2.35, 1.23, 64.0)]),
-    ("coverage", 1, [("flat", 82.0, None, 82.0, 82.0)]),
-    ("coverage_classes", 0,
+    ("coverage_corrected", 0,
      [("class", "number", "scenes", "95.1%", "90.2%", "83%", "none", "0.012", "unbounded"),
       ("all", "all", 7, "95.1%", "90.2%", "83%", "80.0%", "0.012", "3.46")]),
     ("cross_code", 0,
@@ -198,17 +187,6 @@ def test_the_first_page_says_where_the_model_fails() -> None:
         "1 of 2 points lie within U_val, 1 by trend alone",
         "The model fails for ball on Si (wear)",
     ]
-
-
-def test_committed_samples_are_apart_and_show_only_what_was_judged() -> None:
-    """The estimator was fitted to scenes 1000 to 1199."""
-    (seen, last), (first, end) = (committed(name)["seeds"] for name in ("coverage", "coverage_fresh"))
-    assert seen == 0
-    assert last < first < end < 1000
-    for name in ("coverage", "coverage_fresh"):
-        by_number, *_ = exhibit(name, committed(name)).tables
-        assert len(by_number.rows) == 8
-        assert all(row[2] for row in by_number.rows)
 
 
 TABLE = re.compile(

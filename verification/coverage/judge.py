@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-
-import numpy as np
 
 from refimpl.accuracy.refinement import FIRST_GRIDS, longer_side, refine_until, relative_bound
 from verification.coverage.scenes import random_scene
@@ -105,42 +102,3 @@ def reference_of(solves: Sequence[GridSolve], number: str) -> tuple[float, float
         return value - EDGE_SIZE * edge, EDGE_SIZE_BOUND * edge + abs(rest - rest_before)
     area = finest.numbers["contact_area"]
     return area - EDGE_SIZE * finest.edge, EDGE_SIZE_BOUND * finest.edge
-
-
-def reference_change(solves: Sequence[GridSolve]) -> float:
-    """Largest change of the reference on one more grid, the last, over both stated bounds."""
-    shares = []
-    for number in judged_numbers(random_scene(solves[0].seed).scene.friction):
-        (coarse, loose), (fine, tight) = reference_of(solves[:-1], number), reference_of(solves, number)
-        scale = np.finfo(float).eps * abs(fine)
-        shares.append(abs(fine - coarse) / max(loose + tight, scale))
-    return max(shares)
-
-
-def summary(found: Iterable[Coverage]) -> dict[str, float | int | None]:
-    """Shares and medians of one number's coverages at one accuracy; None for a median without an end."""
-    found = list(found)
-    if not found:
-        return {"scenes": 0}
-    costs = [one.cost for one in found if one.cost is not None]
-    met = [one for one in found if one.met]
-    rounding = float(np.finfo(float).eps)  # least divisor: errors below rounding count as rounding
-    return {
-        "scenes": len(found),
-        "met": len(met) / len(found),
-        "covered": sum(one.covered for one in found) / len(found),
-        "covered_at_worst": sum(one.covered_at_worst for one in found) / len(found),
-        "covered_where_met": sum(one.covered for one in met) / len(met) if met else None,
-        "median_bar_over_error": _median([one.bar / max(one.error, rounding) for one in found]),
-        "median_cost": _median(costs),
-        "cost_at_most_2": sum(cost <= 2 for cost in costs) / len(costs) if costs else None,
-        "median_bar": _median([one.bar for one in found]),
-        "median_reference_bound_over_bar": _median(
-            [one.reference_bound / max(one.bar, rounding) for one in found]
-        ),
-    }
-
-
-def _median(values: Sequence[float]) -> float | None:
-    median = float(np.median(values)) if values else math.inf
-    return median if math.isfinite(median) else None

@@ -126,7 +126,7 @@ def coverage() -> Measured:
     """Bars of accuracy=0.01 on random scenes.
 
     Claim: the true error of mu, A, corrected A and f_max lies inside the 95 % bar
-    Source: grids twice as fine as any requested; committed for 224 scenes in coverage.json
+    Source: grids twice as fine as any requested
     Tolerance: what a perfect 95 % bar passes with 97 % probability on 200 scenes
     """
     with tempfile.TemporaryDirectory() as folder:
