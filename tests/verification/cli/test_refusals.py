@@ -244,9 +244,9 @@ def test_result_files(name: str, folder: Path) -> None:
         ("--results", CORRUPTED["wrong counts"], "r.json"),
         ("--against", CORRUPTED["wrong counts"], "old.json"),
         ("--against", "null", "old.json"),
-        ("--committed", CORRUPTED["wrong counts"], "kept/coverage.json"),
-        ("--committed", "[]", "kept/coverage.json"),
-        ("--committed", "{", "kept/coverage.json"),
+        ("--committed", CORRUPTED["wrong counts"], "kept/coverage_corrected.json"),
+        ("--committed", "[]", "kept/coverage_corrected.json"),
+        ("--committed", "{", "kept/coverage_corrected.json"),
         ("--committed", json.dumps({"tail": []}), "kept"),
     ],
 )
@@ -254,7 +254,7 @@ def test_the_file_that_is_refused_is_named_by_its_option(
     option: str, bad: str, named: str, folder: Path
 ) -> None:
     Path("kept").mkdir()
-    files = {"--results": "r.json", "--against": "old.json", "--committed": "kept/coverage.json"}
+    files = {"--results": "r.json", "--against": "old.json", "--committed": "kept/coverage_corrected.json"}
     for role, name in files.items():
         Path(name).write_text(bad if role == option else WHOLE)
     command = "report --results r.json --against old.json --committed kept --output out"
