@@ -25,6 +25,7 @@ its error changed by as much while the parameter changes by a factor of e.
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -76,8 +77,12 @@ class Sensitivity:
     def relative(self, number: str, parameter: str) -> float:
         """``(p / q) dq/dp``: the per cents that q changes by for one per cent of p.
 
-        Raises `InputError` for a number that is zero, and for a name that is none.
+        For one release ``friction_coefficient`` and ``contact_area`` are taken for the corrected numbers, with
+        a DeprecationWarning. Raises `InputError` for a number that is zero, and for a name that is none.
         """
+        if f"{number}_corrected" in self.derivatives:
+            warnings.warn(f"derivatives are those of {number}_corrected", DeprecationWarning, stacklevel=2)
+            number += "_corrected"
         require_one_of("number", number, self.derivatives)
         require_one_of("parameter", parameter, self.parameters)
         derivative, found = self.derivatives[number][parameter], self.found[number]
