@@ -77,8 +77,8 @@ class Sensitivity:
     def relative(self, number: str, parameter: str) -> float:
         """``(p / q) dq/dp``: the per cents that q changes by for one per cent of p.
 
-        For one release ``friction_coefficient`` and ``contact_area`` are taken for the corrected numbers, with
-        a DeprecationWarning. Raises `InputError` for a number that is zero, and for a name that is none.
+        For one release ``friction_coefficient`` and ``contact_area`` mean the corrected numbers, with a
+        DeprecationWarning. Raises `InputError` for a number that is zero, and for a name that is none.
         """
         if f"{number}_corrected" in self.derivatives:
             warnings.warn(f"derivatives are those of {number}_corrected", DeprecationWarning, stacklevel=2)
