@@ -257,11 +257,14 @@ def discretisation(results: Sequence[GridFeatures]) -> dict[str, dict[str, float
 
 def _area(grids: _Grids) -> Estimate:
     """Contact area: the excess along the edge is a regressor, and the scatter is that of a count."""
-    fine = grids.results[-1]
-    waves, oblong = math.hypot(1.0, _WAVES * fine.waviness), math.log(fine.grid.aspect)
-    spread = math.hypot(EDGE_SIZE_SPREAD * waves, OBLONG_SPREAD * oblong)
-    bias = Bias(grids.each(lambda result: result.excess_unit), EDGE_SIZE, spread)
+    bias = Bias(grids.each(lambda result: result.excess_unit), EDGE_SIZE, edge_size_spread(grids.results[-1]))
     return grids.smooth(grids.found("contact_area"), AREA, grids.each(area_scatter), bias=bias)
+
+
+def edge_size_spread(fine: GridFeatures) -> float:
+    """Return the standard deviation of the excess over its unit, wider by short waves and oblong elements."""
+    waves, oblong = math.hypot(1.0, _WAVES * fine.waviness), math.log(fine.grid.aspect)
+    return math.hypot(EDGE_SIZE_SPREAD * waves, OBLONG_SPREAD * oblong)
 
 
 def _plastic_area(fine: GridFeatures) -> Estimate:
