@@ -13,7 +13,7 @@ from tests.documents import ROOT, agree
 FOLDER = ROOT / "docs" / "notebooks"
 STATED = {
     "ball_on_rough_flat": """
-        mu = 0.1064 on 112 x 112, converged
+        mu = 0.1061 on 80 x 80, converged
         fine mu = 0.1064, within the bar: True
         A = 0.1243 mm^2 in 27 patches
     """,
@@ -31,8 +31,8 @@ STATED = {
     """,
     "two_maps_along_a_track": """
         21 of 21 converged
-        mu from 0.114 to 0.133, mean 0.1238
-        Sq = 0.249 um, median bar 4.1%
+        mu from 0.114 to 0.133, mean 0.1237
+        Sq = 0.249 um, median bar 3.0%
     """,
     "yield_study": """
         psi from 0.22 to 4.31, plastic share from 0.00 to 0.90
