@@ -12,6 +12,8 @@ Each number is the intercept q of a line over the grids (`bayesian_line`), ``y_k
   (`SHEAR_BOUNDS`).
 - Approaches: by the border of a free domain, where the pressure of a contact that is cut off is singular as
   under a punch (`BORDER_BOUND`, order h), and by the differences that slopes are (`SLOPE_BOUND`, order h^2).
+  Under a load the mean gap is the approach but for a constant, so that it scatters with the gap's edge as well
+  (`gap_scatter`): nearly full contacts have gaps of few elements.
 - Every other number scatters as powers of the edge fraction, and as slopes bend from element to element.
   Where waves of pressure or slopes are shorter than elements, bars stay wide. Where elements with half of the
   maximum pressure stand alone, nothing bounds it.
@@ -48,6 +50,7 @@ PEAK_BIAS, PEAK_BIAS_SPREAD = (
 )  # c0, s_c: the parabola of a pressure peaks too high, over its curvature drop
 _DIVERGED = 1e100  # in SI units; squares are still doubles
 _LEAST_SHARE = 1e-6  # in place of zero
+_LEAST_RESOLVED = 0.1  # share of gaps that are not single elements: the error of a mean gap does not exceed it
 _WAVES = 1.5  # scatter of areas over waviness; the likeliest on 1500 scenes is 1.34
 _SLOPES = 2  # power of the share that is not single elements, which divides the scatter of slopes
 
@@ -65,6 +68,8 @@ SLOPE_SHARE = 0.2
 # standard deviation of mu by slopes under that pressure, over border fraction and rms slope: the errors there
 BORDER_SLOPES = 0.1
 PLASTIC_COUNT = 0.36  # 95 % bound of the area at the hardness, over the root of its edge elements
+# scatter of the approach over `gap_scatter`: bars hold 95 % of 104 nearly full contacts
+GAP_SHARE = 0.12
 SLOPE_BOUND = 0.35  # the like by differenced slopes, over `slope_displacement_error`: of 38 scenes 0.24
 SHEAR_BOUNDS = {"approach": 0.6, "normal_force": 1.2, "max_pressure": 0.6}
 """95 % bounds of the change by tau on the contact's edge, over its change of the depth: of the approach under
@@ -180,7 +185,7 @@ def _peak(grids: _Grids) -> Estimate:
     Elements of constant pressure displace less than the waves they stand for, by the share ``q^2 h^2 / 24``:
     for a single wave that is a 24th of the drop. Band-limited pressures have no such bias.
     """
-    if not grids.results[-1].peak.inside:
+    if not grids.results[-1].peak.has_limit:
         return Estimate(grids.finest("max_pressure"), math.inf)
     drop = grids.each(lambda result: result.peak.curvature_drop)
     bias = Bias(drop, 0.0 if grids.results[-1].grid.band_limited else PEAK_BIAS, PEAK_BIAS_SPREAD)
@@ -194,7 +199,8 @@ def _approach(grids: _Grids) -> Estimate:
     """The approach under a load, counted from the first contact of the surfaces themselves."""
     values = grids.found("approach") + grids.each(lambda result: result.first_contact.height)
     scatter = grids.peak_scatter(max(grids.finest("approach"), grids.results[-1].depth))
-    return grids.smooth(values, OTHER, scatter, grids.each(first_contact_error))
+    gap = GAP_SHARE * grids.each(gap_scatter)
+    return grids.smooth(values, OTHER, scatter, grids.each(first_contact_error), gap)
 
 
 def _force(grids: _Grids) -> Estimate:
@@ -222,6 +228,20 @@ def slope_scatter(results: Sequence[GridFeatures]) -> Array:
     resolved = np.maximum(1 - single**2, _LEAST_SHARE) ** _SLOPES
     scatter: Array = np.maximum(uneven, np.minimum(uneven / resolved, whole))
     return scatter
+
+
+def gap_scatter(result: GridFeatures) -> float:
+    """Return the unit of the mean gap's scatter (m): its share goes with the edge over the gap's area.
+
+    As that of an area does with the edge over the contact's; more where gaps are single elements.
+    """
+    area = result.grid.nominal_area - result.numbers["contact_area"]
+    if not (area > 0 and result.edge > 0):
+        return 0.0
+    resolved = max(1 - single_element_share(result.edge, area) ** 2, _LEAST_RESOLVED)
+    gap = min(abs(result.mean_gap), max(abs(result.numbers["approach"]), result.depth))
+    share: float = min(result.edge / area, 1.0) ** DEFAULT_ORDER
+    return gap * share / resolved
 
 
 def border_slopes(result: GridFeatures) -> float:

@@ -17,7 +17,7 @@ from refimpl.accuracy.contact_edge import (
     single_element_share,
 )
 from refimpl.accuracy.iteration_error import CORRECTED, merged, reported_numbers
-from refimpl.accuracy.peak import NO_PEAK, Peak, deepest, highest
+from refimpl.accuracy.peak import NO_PEAK, Peak, deepest, highest, on_crest
 from refimpl.grid import Array, Grid, inner, second_differences
 from refimpl.grid.straight_edges import NO_STRAIGHT_EDGES, StraightEdges, straight_edges
 from refimpl.grid.symmetry import symmetry_multiplicity
@@ -57,6 +57,7 @@ class GridFeatures:
     hardness : Pa, None without one
     unfilled : contact area less that which carries its pressure at the hardness (m^2), None without a cap
     loaded : whether the load is prescribed, which then has no discretisation error, or the approach
+    mean_gap : of the deformed surfaces over the domain (m)
     """
 
     grid: Grid
@@ -82,6 +83,7 @@ class GridFeatures:
     hardness: float | None = None
     unfilled: float | None = None
     loaded: bool = True
+    mean_gap: float = 0.0
 
     @property
     def touching(self) -> bool:
@@ -148,7 +150,7 @@ class GridFeatures:
             numbers=reported_numbers(problem, state),
             edge=state.contact_area - state.contact_area_corrected,
             symmetry_multiplicity=symmetry_multiplicity(state.contact, grid),
-            peak=highest(state.pressure, grid),
+            peak=pressure_peak(problem, state),
             first_contact=deepest(problem.gap) if problem.counts_from_first_contact else NO_PEAK,
             slope_sampling_error=slope_sampling_error(state.pressure, state.slopes, grid),
             dmu_dA=per_area,
@@ -167,8 +169,15 @@ class GridFeatures:
             hardness=problem.pair.softer_hardness,
             unfilled=None if math.isinf(problem.cap) else state.contact_area - total / problem.cap,
             loaded=problem.load is not None,
+            mean_gap=float(state.clearance.mean()),
         )
         return replace(features, numbers=dict(features.numbers) | features.corrected)
+
+
+def pressure_peak(problem: Problem, state: State) -> Peak:
+    """Return the pressure's peak, without a limit on a sharp crest of the surfaces."""
+    peak = highest(state.pressure, problem.grid)
+    return replace(peak, has_limit=peak.has_limit and not on_crest(state.pressure, problem.gap, problem.grid))
 
 
 def depth(problem: Problem, state: State) -> float:

@@ -3,7 +3,7 @@
 The highest element lies up to half an element beside the peak, along either axis. The parabola through it and
 its neighbours gives the peak; fourth differences tell whether the field is parabolic there. Where a field is
 resolved, curvature drop and non-parabolicity fall as h^2; of an element that stands alone the
-non-parabolicity is 1 on every grid.
+non-parabolicity is 1 on every grid. At a sharp crest of the surface the pressure has no limit (`on_crest`).
 """
 
 from __future__ import annotations
@@ -18,6 +18,11 @@ from refimpl.grid import Array, Grid, Mask
 
 _RIVAL = 0.5  # share of the highest element: lower maxima do not count for how well the peak is resolved
 _REACH = 2  # elements on either side of a maximum that fourth differences need
+_FAR = 4  # elements on either side of a crest that sixth differences beside it need
+# sixth over fourth differences of a kink: 2.5 to 3, wherever it lies between elements; of a wave of number q
+# 4 sin(q h / 2)^2, so that waves of more than 3.5 elements are none
+_KINK_RATIO = 2.4, 3.1
+_LEAST_KINK = 0.1  # fourth over three second differences, from which a kink shapes the peak
 
 
 @dataclass(frozen=True)
@@ -27,13 +32,13 @@ class Peak:
     height : of the parabola through the highest elements and their neighbours along x and y
     curvature_drop : four times the highest element minus its four neighbours: minus h^2 times the Laplacian
     non_parabolicity : fourth differences over three times the drop: 0 on a parabola, 1 of single elements
-    inside : whether all maxima are surrounded by contact: at a sharp edge or a free border there is no limit
+    has_limit : whether it has one on finer grids: not on a sharp crest, at a sharp edge or a free border
     """
 
     height: float
     curvature_drop: float
     non_parabolicity: float
-    inside: bool = True
+    has_limit: bool = True
 
     @property
     def error_factor(self) -> float:
@@ -65,9 +70,9 @@ def highest(field: Array, grid: Grid) -> Peak:
     """Return the peak of a field that is not negative; `NO_PEAK` of one that vanishes or is not finite.
 
     The non-parabolicity is the largest of all maxima that reach half of the highest: a resolved peak says
-    nothing about one beside it that is not. A peak is not `inside` if such a maximum lies beside an element
-    without contact or beside a free border: the contact is narrower than a parabola there, or the pressure
-    has no limit. Along an axis of fewer than three elements there is no parabola, and the non-parabolicity
+    nothing about one beside it that is not. A peak has no limit if such a maximum lies beside an element without
+    contact or beside a free border: the contact is narrower than a parabola there, or the pressure is
+    singular. Along an axis of fewer than three elements there is no parabola, and the non-parabolicity
     is 1.
 
     >>> x = np.arange(7.0) - 2.75
@@ -75,7 +80,7 @@ def highest(field: Array, grid: Grid) -> Peak:
     >>> round(found.height, 12), round(found.curvature_drop, 12), round(found.non_parabolicity, 12)
     (50.0, 2.0, 0.0)
     >>> highest(np.pad([[3.0]], 3), Grid.square(1.0, 7))
-    Peak(height=3.0, curvature_drop=12.0, non_parabolicity=1.0, inside=False)
+    Peak(height=3.0, curvature_drop=12.0, non_parabolicity=1.0, has_limit=False)
     """
     top = float(field.max())
     if not 0 < top < math.inf:
@@ -91,12 +96,45 @@ def deepest(field: Array) -> Peak:
     """Return the peak of the field turned over, without regard to others or to contact.
 
     >>> deepest(-np.pad([[3.0]], 3))
-    Peak(height=3.0, curvature_drop=12.0, non_parabolicity=1.0, inside=True)
+    Peak(height=3.0, curvature_drop=12.0, non_parabolicity=1.0, has_limit=True)
     """
     i, j = (index + _REACH for index in np.unravel_index([np.argmin(field)], field.shape))
     lines = _lines(-np.pad(field, _REACH, mode="edge"), i, j)
     height, drop, rest = (float(value[0]) for value in _parabolas(lines))
     return Peak(height, drop, rest)
+
+
+def on_crest(field: Array, surface: Array, grid: Grid) -> bool:
+    """Return whether the field's highest element lies on a sharp crest of ``surface`` (m, either sign).
+
+    A kink's second differences vanish but at the two elements beside it, whatever curvature is added to it.
+
+    >>> x = np.arange(16.0) - 7.7
+    >>> waves, roofs = (np.outer(z, np.ones(16)) for z in (np.cos(x), -np.abs(x) - x**2 / 9))
+    >>> grid = Grid.square(1.0, 16)
+    >>> on_crest(waves + 1, waves, grid), on_crest(roofs - roofs.min(), roofs, grid)
+    (False, True)
+    """
+    if min(field.shape) <= 2 * _FAR:
+        return False
+    places = np.unravel_index(np.argmax(field), field.shape)
+    if not grid.periodic:
+        places = tuple(np.clip(i, _FAR, n - 1 - _FAR) for i, n in zip(places, field.shape, strict=True))
+    near = np.arange(-_FAR, _FAR + 1)
+    lines = np.array(
+        [
+            surface[:, places[1]].take(places[0] + near, mode="wrap"),
+            surface[places[0]].take(places[1] + near, mode="wrap"),
+        ]
+    )
+    second, fourth, sixth = (np.abs(np.diff(lines, n)) for n in (2, 4, 6))
+    kinks = fourth[:, 1:-1].max(axis=1)
+    axis = int(np.argmax(kinks))
+    kink, bend = float(kinks[axis]), float(second[:, 2:-2].max(axis=1).sum())
+    if kink <= 64 * np.finfo(float).eps * np.abs(lines).max() or kink < 3 * _LEAST_KINK * bend:
+        return False
+    least, most = _KINK_RATIO
+    return least <= float(sixth[axis].max()) / kink <= most
 
 
 def _peak(padded: Array, contact: Mask, least: float) -> Peak:
