@@ -50,7 +50,7 @@ PEAK_BIAS, PEAK_BIAS_SPREAD = (
 )  # c0, s_c: the parabola of a pressure peaks too high, over its curvature drop
 _DIVERGED = 1e100  # in SI units; squares are still doubles
 _LEAST_SHARE = 1e-6  # in place of zero
-_LEAST_RESOLVED = 0.1  # share of gaps that are not single elements: the error of a mean gap does not exceed it
+_LEAST_RESOLVED = 0.2  # share of gaps that are not single elements: the error of a mean gap does not exceed it
 _WAVES = 1.5  # scatter of areas over waviness; the likeliest on 1500 scenes is 1.34
 _SLOPES = 2  # power of the share that is not single elements, which divides the scatter of slopes
 
@@ -68,8 +68,9 @@ SLOPE_SHARE = 0.2
 # standard deviation of mu by slopes under that pressure, over border fraction and rms slope: the errors there
 BORDER_SLOPES = 0.1
 PLASTIC_COUNT = 0.36  # 95 % bound of the area at the hardness, over the root of its edge elements
-# scatter of the approach over `gap_scatter`: bars hold 95 % of 104 nearly full contacts
-GAP_SHARE = 0.12
+# scatter of the approach over `gap_scatter`, and straight edges of a gap over those of an area: bars hold 95 %
+# of 104 nearly full contacts and of 79 grooves
+GAP_SHARE, GAP_STRAIGHT = 0.12, 3.2
 SLOPE_BOUND = 0.35  # the like by differenced slopes, over `slope_displacement_error`: of 38 scenes 0.24
 SHEAR_BOUNDS = {"approach": 0.6, "normal_force": 1.2, "max_pressure": 0.6}
 """95 % bounds of the change by tau on the contact's edge, over its change of the depth: of the approach under
@@ -233,15 +234,16 @@ def slope_scatter(results: Sequence[GridFeatures]) -> Array:
 def gap_scatter(result: GridFeatures) -> float:
     """Return the unit of the mean gap's scatter (m): its share goes with the edge over the gap's area.
 
-    As that of an area does with the edge over the contact's; more where gaps are single elements.
+    As that of an area does with the edge over the contact's; more where gaps are single elements or end at
+    straight edges along the grid.
     """
     area = result.grid.nominal_area - result.numbers["contact_area"]
     if not (area > 0 and result.edge > 0):
         return 0.0
     resolved = max(1 - single_element_share(result.edge, area) ** 2, _LEAST_RESOLVED)
     gap = min(abs(result.mean_gap), max(abs(result.numbers["approach"]), result.depth))
-    share: float = min(result.edge / area, 1.0) ** DEFAULT_ORDER
-    return gap * share / resolved
+    shares = result.edge / area / resolved, GAP_STRAIGHT * straight_scatter(result) / area
+    return gap * math.hypot(*(min(share, 1.0) ** DEFAULT_ORDER for share in shares))
 
 
 def border_slopes(result: GridFeatures) -> float:
