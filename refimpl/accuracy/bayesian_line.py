@@ -82,12 +82,13 @@ class Estimate(NamedTuple):
 def fit_line(values: Array, weights: Array, prior: Prior, bias: Bias | None = None) -> Estimate:
     """Return the estimate of ``q`` from ``values`` on grids coarse to fine with ``w_k = weights``.
 
-    ``prior.scatter`` is sigma of the finest grid in the number's unit.
+    ``prior.scatter`` is sigma of the finest grid in the number's unit. Zeros on all grids are exact only where
+    that is zero too: symmetry alone leaves its scatter.
 
     >>> fit_line(np.array([1.04, 1.02, 1.01]), np.array([8.0, 2.8, 1.0]), Prior(0.001, 1.0)).value < 1.015
     True
     """
-    if not np.any(values):
+    if not (np.any(values) or prior.scatter > 0):
         return Estimate(0.0, 0.0)
     factors, shares = (np.zeros(1), np.ones(1)) if bias is None else _factors(bias.mean, bias.spread)
     rest = values - factors[:, None] * (0 if bias is None else bias.sizes)

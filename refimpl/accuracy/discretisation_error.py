@@ -145,7 +145,8 @@ def _estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
     area, load = _area(grids), grids.finest("normal_force")
     dmu_dA = grids.each(lambda result: result.dmu_dA)
     slopes = slope_scatter(grids.results), grids.each(border_slopes)
-    across = [size * load for size in (grids.edge_scatter, *slopes)]
+    oblique = grids.each(lambda result: result.rms_slope > 0)  # without slopes Q is zero
+    across = [size * load for size in (grids.edge_scatter * oblique, *slopes)]
     found = {
         "friction_coefficient": _sheared(grids, "friction_coefficient", area, dmu_dA, 1.0),
         "friction_force": _sheared(grids, "friction_force", area, dmu_dA * grids.found("normal_force"), load),
