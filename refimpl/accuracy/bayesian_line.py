@@ -82,8 +82,8 @@ class Estimate(NamedTuple):
 def fit_line(values: Array, weights: Array, prior: Prior, bias: Bias | None = None) -> Estimate:
     """Return the estimate of ``q`` from ``values`` on grids coarse to fine with ``w_k = weights``.
 
-    ``prior.scatter`` is sigma of the finest grid in the number's unit. Zeros on all grids are exact only where
-    that is zero too: symmetry alone leaves its scatter.
+    ``prior.scatter`` is sigma of the finest grid in the number's unit. Zeros on all grids are exact only
+    where that is zero too: symmetry alone leaves its scatter.
 
     >>> fit_line(np.array([1.04, 1.02, 1.01]), np.array([8.0, 2.8, 1.0]), Prior(0.001, 1.0)).value < 1.015
     True

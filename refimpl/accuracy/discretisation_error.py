@@ -12,8 +12,8 @@ Each number is the intercept q of a line over the grids (`bayesian_line`), ``y_k
   (`SHEAR_BOUNDS`).
 - Approaches: by the border of a free domain, where the pressure of a contact that is cut off is singular as
   under a punch (`BORDER_BOUND`, order h), and by the differences that slopes are (`SLOPE_BOUND`, order h^2).
-  Under a load the mean gap is the approach but for a constant, so that it scatters with the gap's edge as well
-  (`gap_scatter`): nearly full contacts have gaps of few elements.
+  Under a load the mean gap is the approach but for a constant, so that it scatters with the gap's edge as
+  well (`gap_scatter`): nearly full contacts have gaps of few elements.
 - Every other number scatters as powers of the edge fraction, and as slopes bend from element to element.
   Where waves of pressure or slopes are shorter than elements, bars stay wide. Where elements with half of the
   maximum pressure stand alone, nothing bounds it.
@@ -50,7 +50,9 @@ PEAK_BIAS, PEAK_BIAS_SPREAD = (
 )  # c0, s_c: the parabola of a pressure peaks too high, over its curvature drop
 _DIVERGED = 1e100  # in SI units; squares are still doubles
 _LEAST_SHARE = 1e-6  # in place of zero
-_LEAST_RESOLVED = 0.2  # share of gaps that are not single elements: the error of a mean gap does not exceed it
+_LEAST_RESOLVED = (
+    0.2  # share of gaps that are not single elements: the error of a mean gap does not exceed it
+)
 _WAVES = 1.5  # scatter of areas over waviness; the likeliest on 1500 scenes is 1.34
 _SLOPES = 2  # power of the share that is not single elements, which divides the scatter of slopes
 
@@ -68,8 +70,8 @@ SLOPE_SHARE = 0.2
 # standard deviation of mu by slopes under that pressure, over border fraction and rms slope: the errors there
 BORDER_SLOPES = 0.1
 PLASTIC_COUNT = 0.36  # 95 % bound of the area at the hardness, over the root of its edge elements
-# scatter of the approach over `gap_scatter`, and straight edges of a gap over those of an area: bars hold 95 %
-# of 104 nearly full contacts and of 79 grooves
+# scatter of the approach over `gap_scatter`, and of a gap's straight edges over an area's: bars hold 95 % of
+# 104 nearly full contacts and of 79 grooves
 GAP_SHARE, GAP_STRAIGHT = 0.12, 3.2
 SLOPE_BOUND = 0.35  # the like by differenced slopes, over `slope_displacement_error`: of 38 scenes 0.24
 SHEAR_BOUNDS = {"approach": 0.6, "normal_force": 1.2, "max_pressure": 0.6}

@@ -70,9 +70,9 @@ def highest(field: Array, grid: Grid) -> Peak:
     """Return the peak of a field that is not negative; `NO_PEAK` of one that vanishes or is not finite.
 
     The non-parabolicity is the largest of all maxima that reach half of the highest: a resolved peak says
-    nothing about one beside it that is not. A peak has no limit if such a maximum lies beside an element without
-    contact or beside a free border: the contact is narrower than a parabola there, or the pressure is
-    singular. Along an axis of fewer than three elements there is no parabola, and the non-parabolicity
+    nothing about one beside it that is not. A peak has no limit if such a maximum lies beside an element
+    without contact or beside a free border: the contact is narrower than a parabola there, or the pressure
+    is singular. Along an axis of fewer than three elements there is no parabola, and the non-parabolicity
     is 1.
 
     >>> x = np.arange(7.0) - 2.75
@@ -107,7 +107,8 @@ def deepest(field: Array) -> Peak:
 def on_crest(field: Array, surface: Array, grid: Grid) -> bool:
     """Return whether the field's highest element lies on a sharp crest of ``surface`` (m, either sign).
 
-    A kink's second differences vanish but at the two elements beside it, whatever curvature is added to it.
+    A kink's second differences vanish but at the two elements beside it, whatever curvature is added to it. A
+    slope ends in a kink at a free border.
 
     >>> x = np.arange(16.0) - 7.7
     >>> waves, roofs = (np.outer(z, np.ones(16)) for z in (np.cos(x), -np.abs(x) - x**2 / 9))
@@ -115,18 +116,9 @@ def on_crest(field: Array, surface: Array, grid: Grid) -> bool:
     >>> on_crest(waves + 1, waves, grid), on_crest(roofs - roofs.min(), roofs, grid)
     (False, True)
     """
-    if min(field.shape) <= 2 * _FAR:
-        return False
-    places = np.unravel_index(np.argmax(field), field.shape)
-    if not grid.periodic:
-        places = tuple(np.clip(i, _FAR, n - 1 - _FAR) for i, n in zip(places, field.shape, strict=True))
-    near = np.arange(-_FAR, _FAR + 1)
-    lines = np.array(
-        [
-            surface[:, places[1]].take(places[0] + near, mode="wrap"),
-            surface[places[0]].take(places[1] + near, mode="wrap"),
-        ]
-    )
+    i, j = np.unravel_index(np.argmax(field), field.shape)
+    columns, rows = grid.padded(surface[:, [j]], _FAR), grid.padded(surface[[i]], _FAR)
+    lines = np.array([columns[i : i + 2 * _FAR + 1, _FAR], rows[_FAR, j : j + 2 * _FAR + 1]])
     second, fourth, sixth = (np.abs(np.diff(lines, n)) for n in (2, 4, 6))
     kinks = fourth[:, 1:-1].max(axis=1)
     axis = int(np.argmax(kinks))

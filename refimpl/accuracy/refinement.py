@@ -30,7 +30,6 @@ GRID_SIZES = (*(quarter * 2**k for k in range(4, 10) for quarter in (5, 6, 7, 8)
 MAX_REFINEMENT = 8  # next grid over the last: predictions from two coarse grids are poor beyond
 MAX_BLIND_REFINEMENT = 2  # ratio where the bar predicts nothing: longer than the number, or of short waves
 _SHORT_WAVES = 0.5  # waviness from which bars fall faster than they predict, as waves are resolved
-LEAST_ORDER, MOST_ORDER = 1.0, 2.0  # orders of a bar in element size that a forecast takes
 _MARGIN = 0.95  # share of the accuracy that a predicted bar may take
 _ITERATION_SHARE = 1e-3  # share of the accuracy that unfinished iterations may take
 
@@ -79,11 +78,13 @@ def refine_until(
 
     On a slender domain all numbers of elements along the longer side are ``slenderness`` times larger.
 
-    A grid that ``features_at`` refuses by `InputError` (memory) is replaced by the next coarser one, as long
-    as that is finer than the last; one that is `Unfinished` ends the refinement on the grid before. The part
-    that tau's active set leaves open need not fall on finer grids: where it has not fallen and exceeds the
-    accuracy, the refinement ends. Where the data leave more open than the accuracy, no grid is finer than
-    ``finest_by_data`` elements along the longer side.
+    An accuracy that even the finest size cannot give ends the refinement. A grid that ``features_at`` refuses
+    by `InputError` (memory, limits) is replaced by the next coarser one, as long as that is finer than the
+    last: a demand that cannot be met within limits ends on the finest grid within them, as looser ones do.
+    One that is `Unfinished` ends the refinement on the grid before. The part that tau's active set leaves
+    open need not fall on finer grids: where it has not fallen and exceeds the accuracy, the refinement ends.
+    Where the data leave more open than the accuracy, no grid is finer than ``finest_by_data`` elements along
+    the longer side.
     """
     results = [features_at(M * slenderness) for M in FIRST_GRIDS]
     remaining, refusal = [M * slenderness for M in grid_sizes], ""
@@ -94,10 +95,9 @@ def refine_until(
         remaining = [M for M in remaining if last < M]
         data = REMAINING_PARTS["data"] if exceeds("data", results[-1], accuracy, quantity) else ""
         useful = [M for M in remaining if not data or finest_by_data >= M]
-        if useful and (needed := forecast(results, accuracy, quantity)) > max(useful):
-            size = f"about {needed:.2g} elements a side, more than {max(useful)}"
-            reason = f"by the bars so far it takes {size}"
-            return Refinement(tuple(results), data or refusal or reason)
+        if useful and not refusal and (needed := least_size(results, accuracy, quantity)) > max(useful):
+            size = f"at least {needed:.2g} elements a side, more than {max(useful)}"
+            return Refinement(tuple(results), data or f"by the bars so far it takes {size}")
         if not useful:
             return Refinement(tuple(results), data or refusal or f"at most {last} elements a side are tried")
         M = next_grid(results, accuracy, quantity, useful)
@@ -188,20 +188,15 @@ def exceeds(part: str, result: GridFeatures, accuracy: float, quantity: str) -> 
     return result.parts.get(quantity, {}).get(part, 0.0) > accuracy * abs(result.numbers[quantity])
 
 
-def forecast(results: Sequence[GridFeatures], accuracy: float, quantity: str) -> float:
-    """Return the elements a side that an accuracy takes if bars go on to fall as over the last two grids.
+def least_size(results: Sequence[GridFeatures], accuracy: float, quantity: str) -> float:
+    """Return the elements a side that an accuracy takes at least: bars fall at order 2 at most.
 
     The size of the last grid where that cannot be said: before a third grid, or from bars beyond the number.
     """
-    size = longer_side(results[-1])
-    if len(results) <= len(FIRST_GRIDS):
+    size, bound = longer_side(results[-1]), relative_bound(results, quantity)
+    if len(results) <= len(FIRST_GRIDS) or not 0 < bound < 1:
         return size
-    coarse, fine = relative_bound(results[:-1], quantity), relative_bound(results, quantity)
-    if not 0 < fine < 1 or not math.isfinite(coarse):
-        return size
-    steps = math.log(size / longer_side(results[-2]))
-    order = min(max(math.log(coarse / fine) / steps, LEAST_ORDER), MOST_ORDER)
-    return size * math.exp(math.log(fine / accuracy) / order)
+    return size * math.sqrt(bound / accuracy)
 
 
 def relative_bound(results: Sequence[GridFeatures], quantity: str) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.grid import Array
 
 SIDE = 1e-3  # m
 
@@ -32,15 +33,42 @@ def test_full_contact_of_a_free_domain_has_the_order_of_a_punch() -> None:
         assert math.isinf(s.error("max_pressure"))
 
 
-def test_a_peak_at_a_sharp_edge_is_open() -> None:
-    """Trapezoidal grooves: the flats' edges are punches' edges."""
-    x = (np.arange(96) + 0.5) / 96
-    heights = np.clip(np.abs((4 * x) % 1 - 0.5) - 0.25, -0.1, 0.1) * 1e-5
-    grooves = rf.ArraySurface(heights[:, None] * np.ones(96))
-    s = rf.solve(pressed(2.0, grooves, rf.Material(E=1e9, nu=0.3), periodic=True), 96)
+PHASES = (4 * (np.arange(96) + 0.5) / 96) % 1  # of four grooves
+
+
+@pytest.mark.parametrize(
+    ("profile", "load"),
+    [
+        (np.clip(np.abs(PHASES - 0.5) - 0.25, -0.1, 0.1), 2.0),  # trapezoids, whose flats end as punches do
+        (np.abs(PHASES - 0.5), 20.0),  # roofs, whose crest lies between two elements
+        (np.abs(np.roll(4 * np.arange(96) / 96, 5) % 1 - 0.5), 20.0),  # on one
+    ],
+)
+def test_a_peak_at_a_sharp_edge_or_crest_is_open(profile: Array, load: float) -> None:
+    grooves = rf.ArraySurface(1e-5 * profile[:, None] * np.ones(96))
+    s = rf.solve(pressed(load, grooves, rf.Material(E=1e9, nu=0.3), periodic=True), 96)
     assert 0 < s.contact_area_share < 1
+    assert s.contact.sum() > 96 * 4 * 4  # four elements wide at least
     assert math.isinf(s.error("max_pressure"))
     assert math.isfinite(s.error("contact_area"))
+
+
+def test_gaps_of_few_elements_leave_the_approach_open() -> None:
+    """The bar by the edge over the contact, instead of over the gap, is 17 times too short."""
+    scene = pressed(2e-3, rf.GaussianRoughness(10e-9, 0.2e-3, seed=4), RUBBER, periodic=True)
+    coarse, fine = rf.solve(scene, 32), rf.solve(scene, 256)
+    assert 0.9 < coarse.contact_area_share < 1
+    off = abs(coarse.approach - fine.approach)
+    assert off < coarse.error("approach") < 30 * off
+
+
+def test_a_transverse_force_that_symmetry_makes_zero_keeps_its_scatter() -> None:
+    """Grooves across sliding; the small-slope approximation has no transverse force at all."""
+    grooves = rf.ArraySurface(1e-5 * np.cos(2 * np.pi * PHASES)[:, None] * np.ones(96))
+    scene = pressed(20.0, grooves, rf.Material(E=1e9, nu=0.3), periodic=True)
+    s, flat = (rf.solve(scene, 96, oblique=oblique) for oblique in (True, False))
+    assert abs(s.binormal_force) < s.uncertainty["binormal_force"]["discretisation"] < 0.05 * s.normal_force
+    assert flat.uncertainty["binormal_force"]["discretisation"] == flat.binormal_force == 0
 
 
 @pytest.mark.parametrize("load", [0.01, 1e-6])

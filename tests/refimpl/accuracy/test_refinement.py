@@ -80,6 +80,19 @@ def test_a_refused_grid_is_replaced_by_a_coarser_one_and_the_end_has_a_reason() 
     assert "96" in ended.refusal
 
 
+def test_a_stricter_demand_ends_on_no_coarser_grid_within_limits() -> None:
+    """Bars that fall by h, half of the number at 64 elements: 0.07 takes 512, 0.02 more than are allowed."""
+
+    def result_at(M: int) -> GridFeatures:
+        if M > 512:
+            raise rf.InputError("grid", M, "at most 512 elements a side")
+        return replace(made_up(M), parts={"contact_area": {"neglected": 32 / M * AREA_LIMIT}})
+
+    ends = [refine_until(result_at, accuracy, "contact_area") for accuracy in (0.07, 0.02)]
+    assert [end.results[-1].grid.shape[0] for end in ends] == [512, 512]
+    assert [bool(end.refusal) for end in ends] == [False, True]
+
+
 @pytest.mark.parametrize(("power", "grids"), [(0.0, 3), (0.1, 3), (-1.0, 4), (-0.5, 5)])
 def test_what_the_active_set_of_tau_leaves_open_ends_the_refinement_unless_finer_grids_leave_less(
     power: float, grids: int
