@@ -28,6 +28,7 @@ from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 
 _LEVELS = 16  # pressures in `highest_areas`
+_TROUGH_ERROR = 0.05  # error of a parabola's trough over its second differences, where no gap was missed
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,7 @@ class GridFeatures:
     unfilled : contact area less that which carries its pressure at the hardness (m^2), None without a cap
     loaded : whether the load is prescribed, which then has no discretisation error, or the approach
     mean_gap : of the deformed surfaces over the domain (m)
+    hidden_gap : the like where the pressure's troughs between elements reach zero (m)
     """
 
     grid: Grid
@@ -84,6 +86,7 @@ class GridFeatures:
     unfilled: float | None = None
     loaded: bool = True
     mean_gap: float = 0.0
+    hidden_gap: float = 0.0
 
     @property
     def touching(self) -> bool:
@@ -170,6 +173,7 @@ class GridFeatures:
             unfilled=None if math.isinf(problem.cap) else state.contact_area - total / problem.cap,
             loaded=problem.load is not None,
             mean_gap=float(state.clearance.mean()),
+            hidden_gap=hidden_gap(problem, state),
         )
         return replace(features, numbers=dict(features.numbers) | features.corrected)
 
@@ -228,6 +232,27 @@ def undecided_area(pressure: Array, grid: Grid) -> float:
     near = around[2:, 1:-1], around[:-2, 1:-1], around[1:-1, 2:], around[1:-1, :-2]
     amid = np.minimum.reduce([pressure, *near]) > 0
     return float(np.count_nonzero(amid & (6 * pressure < sum(near)))) * grid.element_area
+
+
+def hidden_gap(problem: Problem, state: State) -> float:
+    """Return the mean gap (m) of elements amid the contact where the pressure's trough reaches zero.
+
+    The trough is that of the parabola through an element and its neighbours, less a share of its second
+    differences; the pressure missing there opens one element against its neighbours.
+    """
+    grid, pressure = problem.grid, state.pressure
+    around = grid.padded(pressure, 1)
+    near = around[2:, 1:-1], around[:-2, 1:-1], around[1:-1, 2:], around[1:-1, :-2]
+    few = (6 * pressure < sum(near)) & (np.minimum.reduce([pressure, *near]) > 0)
+    here = pressure[few]
+    lacking = -here
+    for ahead, back in (near[:2], near[2:]):
+        bend = np.maximum(ahead[few] + back[few] - 2 * here, 0)
+        rise = np.minimum(np.abs(ahead[few] - back[few]), bend)
+        gain = rise * np.divide(rise, 8 * bend, out=np.zeros_like(bend), where=bend > 0)
+        lacking = lacking + _TROUGH_ERROR * bend + gain
+    opened = float(np.maximum(lacking, 0).sum()) / pressure.size
+    return problem.elasticity.element_compliance(grid) * opened
 
 
 def slope_displacement_error(problem: Problem, state: State) -> float:
