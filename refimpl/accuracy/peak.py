@@ -18,10 +18,11 @@ from refimpl.grid import Array, Grid, Mask
 
 _RIVAL = 0.5  # share of the highest element: lower maxima do not count for how well the peak is resolved
 _REACH = 2  # elements on either side of a maximum that fourth differences need
-_FAR = 4  # elements on either side of a crest that sixth differences beside it need
+_FAR = 5  # elements on either side of a maximum that sixth differences beside it need
+_CREST_RIVAL = 0.8  # share of the highest element: on finer grids lower maxima on a crest may exceed it
 # sixth over fourth differences of a kink: 2.5 to 3, wherever it lies between elements; of a wave of number q
 # 4 sin(q h / 2)^2, so that waves of more than 3.5 elements are none
-_KINK_RATIO = 2.4, 3.1
+_KINK_RATIO = 2.45, 3.05
 _LEAST_KINK = 0.1  # fourth over three second differences, from which a kink shapes the peak
 
 
@@ -99,34 +100,37 @@ def deepest(field: Array) -> Peak:
     Peak(height=3.0, curvature_drop=12.0, non_parabolicity=1.0, has_limit=True)
     """
     i, j = (index + _REACH for index in np.unravel_index([np.argmin(field)], field.shape))
-    lines = _lines(-np.pad(field, _REACH, mode="edge"), i, j)
+    lines = _lines(-np.pad(field, _REACH, mode="edge"), i, j, _REACH)
     height, drop, rest = (float(value[0]) for value in _parabolas(lines))
     return Peak(height, drop, rest)
 
 
 def on_crest(field: Array, surface: Array, grid: Grid) -> bool:
-    """Return whether the field's highest element lies on a sharp crest of ``surface`` (m, either sign).
+    """Return whether one of the field's highest maxima lies on a sharp crest of ``surface`` (m, either sign).
 
     A kink's second differences vanish but at the two elements beside it, whatever curvature is added to it. A
     slope ends in a kink at a free border.
 
     >>> x = np.arange(16.0) - 7.7
-    >>> waves, roofs = (np.outer(z, np.ones(16)) for z in (np.cos(x), -np.abs(x) - x**2 / 9))
-    >>> grid = Grid.square(1.0, 16)
+    >>> waves, roofs = (np.outer(z, np.ones(16)) for z in (np.cos(np.pi * x / 4), -np.abs(x) - x**2 / 9))
+    >>> grid = Grid.square(1.0, 16, periodic=True)
     >>> on_crest(waves + 1, waves, grid), on_crest(roofs - roofs.min(), roofs, grid)
     (False, True)
     """
-    i, j = np.unravel_index(np.argmax(field), field.shape)
-    columns, rows = grid.padded(surface[:, [j]], _FAR), grid.padded(surface[[i]], _FAR)
-    lines = np.array([columns[i : i + 2 * _FAR + 1, _FAR], rows[_FAR, j : j + 2 * _FAR + 1]])
-    second, fourth, sixth = (np.abs(np.diff(lines, n)) for n in (2, 4, 6))
-    kinks = fourth[:, 1:-1].max(axis=1)
-    axis = int(np.argmax(kinks))
-    kink, bend = float(kinks[axis]), float(second[:, 2:-2].max(axis=1).sum())
-    if kink <= 64 * np.finfo(float).eps * np.abs(lines).max() or kink < 3 * _LEAST_KINK * bend:
+    top = float(field.max())
+    if not 0 < top < math.inf:
         return False
+    box = grid.window_around(field >= _CREST_RIVAL * top, margin=_FAR).slices
+    i, j = _maxima(grid.padded(field[box], _FAR), _FAR, _CREST_RIVAL * top)
+    lines = _lines(grid.padded(surface[box], _FAR), i, j, _FAR)
+    second, fourth, sixth = (np.abs(np.diff(lines, n, axis=1)) for n in (2, 4, 6))
+    kinks, bends = fourth[:, 1:-1].max(axis=1), second[:, 2:-2].max(axis=1).sum(axis=0)
+    sharper = np.argmax(kinks, axis=0), np.arange(len(i))
+    kink, change = kinks[sharper], sixth.max(axis=1)[sharper]
+    rounding = 64 * np.finfo(float).eps * np.abs(lines).max(axis=(0, 1))
+    shaping = kink > np.maximum(rounding, 3 * _LEAST_KINK * bends)
     least, most = _KINK_RATIO
-    return least <= float(sixth[axis].max()) / kink <= most
+    return bool((shaping & (least * kink <= change) & (change <= most * kink)).any())
 
 
 def _peak(padded: Array, contact: Mask, least: float) -> Peak:
@@ -134,22 +138,27 @@ def _peak(padded: Array, contact: Mask, least: float) -> Peak:
 
     ``contact`` has that frame too, without contact beyond a free border.
     """
-    inner, back, ahead = slice(2, -2), slice(1, -3), slice(3, -1)
-    field = padded[inner, inner]
-    maxima: Mask = field >= least
-    for neighbour in (padded[back, inner], padded[ahead, inner], padded[inner, back], padded[inner, ahead]):
-        maxima &= field >= neighbour
-    i, j = np.nonzero(maxima)
-    i, j = i + _REACH, j + _REACH
-    heights, drops, rests = _parabolas(_lines(padded, i, j))
+    i, j = _maxima(padded, _REACH, least)
+    heights, drops, rests = _parabolas(_lines(padded, i, j, _REACH))
     around = contact[i - 1, j] & contact[i + 1, j] & contact[i, j - 1] & contact[i, j + 1]
     best = int(np.argmax(heights))
     return Peak(float(heights[best]), float(drops[best]), float(rests.max()), bool(around.all()))
 
 
-def _lines(padded: Array, i: NDArray[np.intp], j: NDArray[np.intp]) -> Array:
-    """The five elements about each place, along x and along y: shape ``(2, 5, n)``."""
-    near = np.arange(-_REACH, _REACH + 1)[:, None]
+def _maxima(padded: Array, frame: int, least: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Places in a field with a frame of elements: at least ``least``, and no lower than those beside."""
+    inner, back, ahead = slice(frame, -frame), slice(frame - 1, -frame - 1), slice(frame + 1, 1 - frame)
+    field = padded[inner, inner]
+    maxima: Mask = field >= least
+    for neighbour in (padded[back, inner], padded[ahead, inner], padded[inner, back], padded[inner, ahead]):
+        maxima &= field >= neighbour
+    i, j = np.nonzero(maxima)
+    return i + frame, j + frame
+
+
+def _lines(padded: Array, i: NDArray[np.intp], j: NDArray[np.intp], reach: int) -> Array:
+    """Elements to ``reach`` on either side of each place, along x and y: shape ``(2, 2 reach + 1, n)``."""
+    near = np.arange(-reach, reach + 1)[:, None]
     return np.array([padded[i + near, j], padded[i, j + near]])
 
 

@@ -289,9 +289,9 @@ def test_the_tolerance_of_a_refinement_lies_between_its_ends(accuracy: float, to
 
 @pytest.mark.parametrize(("multiplicity", "squares"), [(1.0, 0), (1.0, 36), (4.0, 36)])
 def test_the_yielded_area_is_uncertain_by_its_edge(multiplicity: float, squares: int) -> None:
-    """25 edge elements, 0.36 of a count's root each way and their excess, more where elements stand alone with
-    four faces each; runs of straight edges, half an element each, come in and out together: three of 2, 4 and
-    4 faces have squares of 36."""
+    """25 edge elements, 0.36 of a count's root each way and their excess, more where elements stand alone
+    with four faces each; runs of straight edges, half an element each, come in and out together: three of 2,
+    4 and 4 faces have squares of 36."""
     features = made_up(32)
     dA = features.grid.element_area
     yields = replace(
