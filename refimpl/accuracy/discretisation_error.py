@@ -203,7 +203,7 @@ def _peak(grids: _Grids) -> Estimate:
     Elements of constant pressure displace less than the waves they stand for, by the share ``q^2 h^2 / 24``:
     for a single wave that is a 24th of the drop. Band-limited pressures have no such bias.
     """
-    if not grids.results[-1].peak.has_limit:
+    if not grids.results[-1].peak.smooth:
         return Estimate(grids.finest("max_pressure"), math.inf)
     drop = grids.each(lambda result: result.peak.curvature_drop)
     bias = Bias(drop, 0.0 if grids.results[-1].grid.band_limited else PEAK_BIAS, PEAK_BIAS_SPREAD)

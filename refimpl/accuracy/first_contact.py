@@ -14,6 +14,7 @@ from dataclasses import replace
 from refimpl.accuracy.grid_features import GridFeatures
 
 PEAK_ERROR = 0.02  # standard deviation of the peak of a gap, over its curvature drop
+CREST_ERROR = 0.15  # the like on a sharp crest, whose tip lies above the parabola: bounds 0.65, 0.5 found
 HERTZ_EXPONENTS = {
     "normal_force": 1.5,
     "binormal_force": 1.5,
@@ -53,7 +54,9 @@ def first_contact_share(features: GridFeatures) -> float:
 
 def first_contact_error(features: GridFeatures) -> float:
     """Return the standard deviation of the height of first contact (m)."""
-    return features.first_contact.widened(PEAK_ERROR * features.first_contact.curvature_drop)
+    peak = features.first_contact
+    drop = peak.curvature_drop
+    return peak.widened(PEAK_ERROR * drop) if peak.smooth else CREST_ERROR * drop
 
 
 def _presses(features: GridFeatures, share: float) -> bool:

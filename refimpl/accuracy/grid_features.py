@@ -154,7 +154,7 @@ class GridFeatures:
             edge=state.contact_area - state.contact_area_corrected,
             symmetry_multiplicity=symmetry_multiplicity(state.contact, grid),
             peak=pressure_peak(problem, state),
-            first_contact=deepest(problem.gap) if problem.counts_from_first_contact else NO_PEAK,
+            first_contact=first_contact(problem),
             slope_sampling_error=slope_sampling_error(state.pressure, state.slopes, grid),
             dmu_dA=per_area,
             parts=parts | {name: parts[raw] for name, raw in CORRECTED.items() if raw in parts},
@@ -179,9 +179,18 @@ class GridFeatures:
 
 
 def pressure_peak(problem: Problem, state: State) -> Peak:
-    """Return the pressure's peak, without a limit on a sharp crest of the surfaces."""
+    """Return the pressure's peak, which is not smooth on a sharp crest of the surfaces."""
     peak = highest(state.pressure, problem.grid)
-    return replace(peak, has_limit=peak.has_limit and not on_crest(state.pressure, problem.gap, problem.grid))
+    return replace(peak, smooth=peak.smooth and not on_crest(state.pressure, problem.gap, problem.grid))
+
+
+def first_contact(problem: Problem) -> Peak:
+    """Return the peak of the gap turned over; `NO_PEAK` where approaches do not count from there."""
+    if not problem.counts_from_first_contact:
+        return NO_PEAK
+    height = problem.gap.max() - problem.gap
+    sharp = on_crest(height, problem.gap, problem.grid, share=1.0)
+    return replace(deepest(problem.gap), smooth=not sharp)
 
 
 def depth(problem: Problem, state: State) -> float:

@@ -33,13 +33,13 @@ class Peak:
     height : of the parabola through the highest elements and their neighbours along x and y
     curvature_drop : four times the highest element minus its four neighbours: minus h^2 times the Laplacian
     non_parabolicity : fourth differences over three times the drop: 0 on a parabola, 1 of single elements
-    has_limit : whether it has one on finer grids: not on a sharp crest, at a sharp edge or a free border
+    smooth : whether a pressure has a limit there: not on a sharp crest, at a sharp edge or a free border
     """
 
     height: float
     curvature_drop: float
     non_parabolicity: float
-    has_limit: bool = True
+    smooth: bool = True
 
     @property
     def error_factor(self) -> float:
@@ -81,7 +81,7 @@ def highest(field: Array, grid: Grid) -> Peak:
     >>> round(found.height, 12), round(found.curvature_drop, 12), round(found.non_parabolicity, 12)
     (50.0, 2.0, 0.0)
     >>> highest(np.pad([[3.0]], 3), Grid.square(1.0, 7))
-    Peak(height=3.0, curvature_drop=12.0, non_parabolicity=1.0, has_limit=False)
+    Peak(height=3.0, curvature_drop=12.0, non_parabolicity=1.0, smooth=False)
     """
     top = float(field.max())
     if not 0 < top < math.inf:
@@ -97,7 +97,7 @@ def deepest(field: Array) -> Peak:
     """Return the peak of the field turned over, without regard to others or to contact.
 
     >>> deepest(-np.pad([[3.0]], 3))
-    Peak(height=3.0, curvature_drop=12.0, non_parabolicity=1.0, has_limit=True)
+    Peak(height=3.0, curvature_drop=12.0, non_parabolicity=1.0, smooth=True)
     """
     i, j = (index + _REACH for index in np.unravel_index([np.argmin(field)], field.shape))
     lines = _lines(-np.pad(field, _REACH, mode="edge"), i, j, _REACH)
@@ -105,11 +105,11 @@ def deepest(field: Array) -> Peak:
     return Peak(height, drop, rest)
 
 
-def on_crest(field: Array, surface: Array, grid: Grid) -> bool:
-    """Return whether one of the field's highest maxima lies on a sharp crest of ``surface`` (m, either sign).
+def on_crest(field: Array, surface: Array, grid: Grid, share: float = _CREST_RIVAL) -> bool:
+    """Return whether a maximum of that share lies on a sharp crest of ``surface`` (m, either sign).
 
-    A kink's second differences vanish but at the two elements beside it, whatever curvature is added to it. A
-    slope ends in a kink at a free border.
+    A kink's second differences vanish but at the two elements beside it, whatever curvature is added to it.
+    Lines that leave a free domain are not looked at.
 
     >>> x = np.arange(16.0) - 7.7
     >>> waves, roofs = (np.outer(z, np.ones(16)) for z in (np.cos(np.pi * x / 4), -np.abs(x) - x**2 / 9))
@@ -120,11 +120,12 @@ def on_crest(field: Array, surface: Array, grid: Grid) -> bool:
     top = float(field.max())
     if not 0 < top < math.inf:
         return False
-    box = grid.window_around(field >= _CREST_RIVAL * top, margin=_FAR).slices
-    i, j = _maxima(grid.padded(field[box], _FAR), _FAR, _CREST_RIVAL * top)
+    box = grid.window_around(field >= share * top, margin=_FAR).slices
+    i, j = _maxima(grid.padded(field[box], _FAR), _FAR, share * top)
     lines = _lines(grid.padded(surface[box], _FAR), i, j, _FAR)
     second, fourth, sixth = (np.abs(np.diff(lines, n, axis=1)) for n in (2, 4, 6))
-    kinks, bends = fourth[:, 1:-1].max(axis=1), second[:, 2:-2].max(axis=1).sum(axis=0)
+    known = _lines(np.pad(np.ones(field[box].shape), _FAR, mode=grid.continuation), i, j, _FAR).all(axis=1)
+    kinks, bends = known * fourth[:, 1:-1].max(axis=1), second[:, 2:-2].max(axis=1).sum(axis=0)
     sharper = np.argmax(kinks, axis=0), np.arange(len(i))
     kink, change = kinks[sharper], sixth.max(axis=1)[sharper]
     rounding = 64 * np.finfo(float).eps * np.abs(lines).max(axis=(0, 1))

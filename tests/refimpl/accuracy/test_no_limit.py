@@ -87,6 +87,25 @@ def test_gaps_of_few_elements_leave_the_approach_open(
     assert off < coarse.error("approach") < 30 * off
 
 
+@dataclass(frozen=True)
+class Roof(rf.Surface):
+    """A ridge along y at the middle, where it lies between the elements of even grids."""
+
+    kind: ClassVar[str] = "roof"
+
+    def heights_on(self, grid: rf.Grid, offset: tuple[float, float]) -> Array:
+        return -3e-3 * np.abs(grid.x - SIDE / 2)[:, None] * np.ones(grid.shape[1])
+
+
+def test_first_contact_on_a_sharp_crest_lies_above_the_parabola() -> None:
+    """The bar of a smooth peak was 1.7 times too short."""
+    rigid = rf.Body(rf.Material(E=math.inf, nu=0.3), rf.Sphere(0.05))
+    scene = rf.Scene(rigid, rf.Body(POLYMER, Roof()), rf.Friction(0.0, 0.1), load=2.0, side=SIDE)
+    coarse, fine = rf.solve(scene, 48), rf.solve(scene, 384)
+    off = abs(coarse.approach - fine.approach)
+    assert off < coarse.error("approach") < 5 * off
+
+
 def test_a_transverse_force_that_symmetry_makes_zero_keeps_its_scatter() -> None:
     """Grooves across sliding; the small-slope approximation has no transverse force at all."""
     grooves = rf.ArraySurface(1e-5 * np.cos(2 * np.pi * PHASES)[:, None] * np.ones(96))

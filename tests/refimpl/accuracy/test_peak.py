@@ -89,7 +89,7 @@ def test_non_parabolicity_is_fourth_differences_over_three_times_the_drop() -> N
 
 def test_an_element_that_stands_alone_is_rough_on_every_grid() -> None:
     lone = highest(np.pad([[7.0]], 4))
-    assert lone == Peak(7.0, 28.0, 1.0, has_limit=False)
+    assert lone == Peak(7.0, 28.0, 1.0, smooth=False)
     assert math.isinf(lone.error_factor)
     assert math.isinf(lone.widened(0.0))
 
@@ -104,14 +104,14 @@ def test_a_lone_element_beside_a_resolved_peak_counts_from_half_of_it_on() -> No
         found = highest(beside)
         assert found.height == alone.height
         assert (found.non_parabolicity == 1.0) is rough
-        assert found.has_limit is not rough
+        assert found.smooth is not rough
 
 
 def test_at_a_border_a_field_stays_as_it_is() -> None:
     """Its highest element then has fewer that are lower, and no peak beyond is made up."""
     field = np.array([[5.0, 4.0, 3.0], [4.0, 3.0, 2.0], [3.0, 2.0, 1.0]])
     corners = [highest(corner) for corner in (field, field[::-1], field[:, ::-1], field[::-1, ::-1])]
-    assert corners == [Peak(5.25, 2.0, 2 / 3, has_limit=False)] * 4
+    assert corners == [Peak(5.25, 2.0, 2 / 3, smooth=False)] * 4
 
 
 def test_level_and_empty_fields_have_no_relief() -> None:
@@ -120,7 +120,7 @@ def test_level_and_empty_fields_have_no_relief() -> None:
     full = highest(np.full((5, 5), 3.0), periodic=True)
     assert full == Peak(3.0, 0.0, 0.0)
     assert full.error_factor == 1.0
-    assert highest(np.full((5, 5), 3.0)) == replace(full, has_limit=False)  # at a free border
+    assert highest(np.full((5, 5), 3.0)) == replace(full, smooth=False)  # at a free border
 
 
 @pytest.mark.parametrize("scale", [1e-300, 1e300])
