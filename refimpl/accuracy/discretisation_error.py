@@ -80,8 +80,8 @@ SLOPE_SHARE = 0.2
 BORDER_SLOPES = 0.1
 PLASTIC_COUNT = 0.36  # 95 % bound of the area at the hardness, over the root of its edge elements
 # scatter of the approach over `gap_scatter`, and of a gap's straight edges over an area's: bars hold 95 % of
-# 104 nearly full contacts and of 229 grooves
-GAP_SHARE, GAP_STRAIGHT = 0.12, 4.0
+# 138 nearly full contacts and of 229 grooves
+GAP_SHARE, GAP_STRAIGHT = 0.15, 3.5
 HIDDEN_GAP = (
     0.4  # 95 %: approach by gaps that no element shows, over `hidden_gap`; of 24 contacts 0.42 at most
 )
