@@ -14,7 +14,8 @@ from refimpl.driver.solve import solve
 from refimpl.grid import Array
 from refimpl.scene.parameters import parameters, with_parameter
 from refimpl.scene.scene import Scene
-from refimpl.sensitivities.sensitivity import difference_quotients, friction_slopes, grid_sensitivity
+from refimpl.sensitivities.difference_quotients import difference_quotients
+from refimpl.sensitivities.sensitivity import friction_slopes, grid_sensitivity
 from refimpl.solution.solution import Solution
 
 COVERAGE = 1.959963984540054  # half-width of 95 % over the standard uncertainty, normal distribution

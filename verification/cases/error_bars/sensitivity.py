@@ -12,7 +12,8 @@ import refimpl as rf
 from refimpl.model.friction import is_frictionless
 from refimpl.scene.parameters import differentiable_parameters, with_parameter
 from refimpl.sensitivities.budget import budget
-from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity
+from refimpl.sensitivities.difference_quotients import NUMBERS
+from refimpl.sensitivities.sensitivity import Sensitivity
 from verification.cases import Measured, case
 from verification.coverage.scenes import random_scene
 
