@@ -28,7 +28,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from refimpl.accuracy.bayesian_line import DEFAULT_ORDER, Bias, Estimate, Prior, fit_line
-from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD, OBLONG_SPREAD, single_element_share
+from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD, single_element_share
 from refimpl.accuracy.first_contact import (
     HERTZ_EXPONENTS,
     at_first_contact,
@@ -48,10 +48,11 @@ PEAK_BIAS, PEAK_BIAS_SPREAD = (
 )  # c0, s_c: the parabola of a pressure peaks too high, over its curvature drop
 _DIVERGED = 1e100  # in SI units; squares are still doubles
 _LEAST_SHARE = 1e-6  # in place of zero
-_WAVES = 1.5  # scatter of areas over waviness; the likeliest on 1500 scenes is 1.34
 _SLOPES = 2  # power of the share that is not single elements, which divides the scatter of slopes
 
-AREA = Prior(0.165, 6.0)  # unit: `area_scatter`
+AREA = Prior(1.0, 6.0)  # unit: `area_scatter`
+EDGE_SCATTER, UNEVEN_SCATTER = 0.03, 0.46  # elements per face, and per uneven one
+STRAIGHT_LEFT = 0.42  # of `straight_scatter`, beyond the mean excess
 BULK = Prior(0.003, 1.0)  # friction without tau's share; unit: value (edge / area)^1.5
 PEAK = Prior(0.008, 2.5)  # unit: the peak's curvature drop
 BINORMAL = Prior(0.0002, 1.0)  # unit: normal force (edge / area)^1.5
@@ -257,14 +258,8 @@ def discretisation(results: Sequence[GridFeatures]) -> dict[str, dict[str, float
 
 def _area(grids: _Grids) -> Estimate:
     """Contact area: the excess along the edge is a regressor, and the scatter is that of a count."""
-    bias = Bias(grids.each(lambda result: result.excess_unit), EDGE_SIZE, edge_size_spread(grids.results[-1]))
+    bias = Bias(grids.each(lambda result: result.excess), 1.0, EDGE_SIZE_SPREAD / EDGE_SIZE)
     return grids.smooth(grids.found("contact_area"), AREA, grids.each(area_scatter), bias=bias)
-
-
-def edge_size_spread(fine: GridFeatures) -> float:
-    """Return the standard deviation of the excess over its unit, wider by short waves and oblong elements."""
-    waves, oblong = math.hypot(1.0, _WAVES * fine.waviness), math.log(fine.grid.aspect)
-    return math.hypot(EDGE_SIZE_SPREAD * waves, OBLONG_SPREAD * oblong)
 
 
 def _plastic_area(fine: GridFeatures) -> Estimate:
@@ -277,14 +272,18 @@ def _plastic_area(fine: GridFeatures) -> Estimate:
 
 
 def area_scatter(result: GridFeatures) -> float:
-    """Return the unit of the area's scatter (m^2): the root of a count of edge elements and undecided ones.
+    """Return the standard deviation of the area about its mean excess (m^2).
 
-    Symmetric ones come in and out together, and short waves of the pressure add to that.
+    Faces and undecided elements scatter as a count of which symmetric ones come in and out together, and
+    uneven faces along a straight edge do. Of other straight edges the mean excess has the greater part.
     """
-    elements = max(result.edge, 0.0) / EDGE_SHARE + result.undecided
-    together = result.symmetry_multiplicity + (_WAVES * result.waviness) ** 2
-    counted = math.sqrt(elements * result.grid.element_area * together)
-    return math.hypot(counted, straight_scatter(result) / AREA.scatter)
+    dA, uneven = result.grid.element_area, result.offset.uneven
+    faces, straight = max(result.edge, 0.0) / EDGE_SHARE / dA, straight_scatter(result) / dA
+    variance = EDGE_SCATTER**2 * (faces + result.undecided / dA) * result.symmetry_multiplicity
+    variance += (STRAIGHT_LEFT * straight) ** 2
+    if uneven:
+        variance += UNEVEN_SCATTER**2 * uneven * (1 + (straight / STRAIGHT_SCATTER) ** 2 / faces)
+    return math.sqrt(variance) * dA
 
 
 def straight_scatter(result: GridFeatures) -> float:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.accuracy.discretisation_error import edge_size_spread
+from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD
 from refimpl.driver.solve import solve
 from refimpl.grid import Array
 from refimpl.scene.parameters import parameters, with_parameter
@@ -133,8 +133,8 @@ def _response(
         )
     inputs, solves = _inputs(scene, solution, tolerances)
     by_tau, by_beta = friction_slopes(scene, solution)
-    features, excess = solution.features, solution.features.excess
-    factor = COVERAGE * edge_size_spread(features) * features.excess_unit
+    excess = solution.features.excess
+    factor = COVERAGE * EDGE_SIZE_SPREAD / EDGE_SIZE * abs(excess)
     slopes = (by_tau, by_beta, *(_log_slope(scene, solution, name) for name in further))
     parts = dict(solution.uncertainty["friction_coefficient_corrected"])
     edge = parts.pop("active set", 0.0)
