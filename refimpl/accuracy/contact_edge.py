@@ -28,14 +28,15 @@ from refimpl.model.forces import EDGE_SHARE
 EDGE_SIZE, EDGE_SIZE_SPREAD = 0.72, 0.04  # c0, s_c
 # elements: per face, from one end of both ratios to the other; per face beyond the second of a run along an
 # axis; per element on a free border that cuts the contact off, which carries too little there
-OFFSET_EXCESS, STRAIGHT_EXCESS, BORDER_EXCESS = 0.36, 0.08, 0.12
+OFFSET_EXCESS, STRAIGHT_EXCESS, BORDER_EXCESS = 0.35, 0.08, 0.115
 _FILLED = 0.45  # ratio of pressures from which the edge fills the element
 _REACHED, _LEFT, _MOST = (
     0.1,
     0.3,
     0.4,
 )  # ratio of gaps: of an edge that reaches the element, leaves it; any edge
-_WIDE, _NARROW = 0.55, 0.75  # place of the edge by ratios of gaps that are no edge's: up to 1, and beyond
+_EVEN = 0.99  # ratio from which neither rises: symmetric ones are equal but for iterations
+_WIDE, _NARROW = 0.55, 0.75  # place of the edge by ratios of gaps that are no edge's: below that, and beyond
 _MEAN = -0.09  # of both places
 _UNEVEN_PRESSURE = (
     0.25  # variance of a face without a rise of pressure over that of one without a rise of gap
@@ -61,8 +62,8 @@ def edge_offset(pressure: Array, clearance: Array, grid: Grid) -> EdgeOffset:
 
     >>> pressure, gap = np.array([[0.0, 0.0, 0.2, 1.0, 1.0]]), np.array([[4.0, 1.0, 0.0, 0.0, 0.0]])
     >>> found = edge_offset(pressure, gap, Grid((1, 5), (1.0, 5.0)))
-    >>> round(found.excess, 4), found.uneven  # 0.36 (0.75 - 0.2 / 0.45 + 0.09)
-    (0.1424, 0.0)
+    >>> round(found.excess, 4), found.uneven  # 0.35 (0.75 - 0.2 / 0.45 + 0.09)
+    (0.1384, 0.0)
     """
     box = grid.window_around(pressure > 0, margin=2).slices
     p, gap = (grid.padded(field[box], 2) for field in (pressure, np.where(pressure > 0, 0.0, clearance)))
@@ -80,14 +81,15 @@ def _downwards(p: Array, gap: Array) -> EdgeOffset:
         for field, rows in ((p, inner), (p, slice(1, -3)), (gap, slice(3, -1)), (gap, slice(4, None)))
     )
     filled, open_ = _ratio(here, behind), _ratio(beyond, next_)
-    by_pressure = np.where(filled < 1, np.minimum(filled / _FILLED, 1.0), 0.5)
+    level, narrow = filled >= _EVEN, open_ >= _EVEN
+    by_pressure = np.where(level, 0.5, np.minimum(filled / _FILLED, 1.0))
     by_gap = np.clip((open_ - _REACHED) / (_LEFT - _REACHED), 0.0, 1.0)
     by_gap[open_ >= _MOST] = _WIDE
-    by_gap[open_ >= 1] = _NARROW
+    by_gap[narrow] = _NARROW
     along = (p[inner, 3:-1] - p[inner, 1:-3])[faces]
     squared_normal = _ratio(behind**2, behind**2 + along**2)
     share = 0.5 + 0.5 * np.where(behind > 0, squared_normal, 0.0)
-    uneven = np.count_nonzero(open_ >= 1) + _UNEVEN_PRESSURE * np.count_nonzero(filled >= 1)
+    uneven = np.count_nonzero(narrow) + _UNEVEN_PRESSURE * np.count_nonzero(level)
     return EdgeOffset(float(np.sum(share * (by_gap - by_pressure) - _MEAN)), uneven)
 
 

@@ -52,6 +52,7 @@ _SLOPES = 2  # power of the share that is not single elements, which divides the
 
 AREA = Prior(1.0, 6.0)  # unit: `area_scatter`
 EDGE_SCATTER, UNEVEN_SCATTER = 0.03, 0.46  # elements per face, and per uneven one
+_ALONE = 5.5  # power of the share of single elements: patches of 2 x 2 have bars of all their area
 STRAIGHT_LEFT = 0.42  # of `straight_scatter`, beyond the mean excess
 BULK = Prior(0.003, 1.0)  # friction without tau's share; unit: value (edge / area)^1.5
 PEAK = Prior(0.008, 2.5)  # unit: the peak's curvature drop
@@ -275,12 +276,14 @@ def area_scatter(result: GridFeatures) -> float:
     """Return the standard deviation of the area about its mean excess (m^2).
 
     Faces and undecided elements scatter as a count of which symmetric ones come in and out together, and
-    uneven faces along a straight edge do. Of other straight edges the mean excess has the greater part.
+    uneven faces along a straight edge do. Of other straight edges the mean excess has the greater part. Where
+    elements stand alone, nothing says how much of each is in contact.
     """
-    dA, uneven = result.grid.element_area, result.offset.uneven
+    dA, area, uneven = result.grid.element_area, result.numbers["contact_area"], result.offset.uneven
     faces, straight = max(result.edge, 0.0) / EDGE_SHARE / dA, straight_scatter(result) / dA
-    variance = EDGE_SCATTER**2 * (faces + result.undecided / dA) * result.symmetry_multiplicity
-    variance += (STRAIGHT_LEFT * straight) ** 2
+    alone = area / dA * single_element_share(result.edge, area) ** _ALONE
+    together = EDGE_SCATTER**2 * (faces + result.undecided / dA) + alone
+    variance = together * result.symmetry_multiplicity + (STRAIGHT_LEFT * straight) ** 2
     if uneven:
         variance += UNEVEN_SCATTER**2 * uneven * (1 + (straight / STRAIGHT_SCATTER) ** 2 / faces)
     return math.sqrt(variance) * dA
