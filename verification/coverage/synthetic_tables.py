@@ -146,7 +146,8 @@ def _table_of_grids(number: int) -> SyntheticTable:
         rms, length = ball.approach * draw.log(0.02, 0.2), SIDE * draw.log(0.1, 0.3)
         rough = rf.GaussianRoughness(rms, length, 2 * number)
         if kind == "self-affine ball":
-            cuts = {"long_cut": length, "roll_off": length, "short_cut": SIDE / draw.log(8, 32)}
+            short = min(SIDE / draw.log(8, 32), 0.99 * length)  # below the roll-off
+            cuts = {"long_cut": length, "roll_off": length, "short_cut": short}
             rough = rf.SelfAffineRoughness(
                 hurst=float(draw.rng.uniform(0.6, 0.9)), rms=0.5 * rms, seed=2 * number, **cuts
             )
