@@ -35,7 +35,6 @@ from refimpl.model.problem import Terms
 from refimpl.scene.parameters import differentiable_parameters, parameters
 from refimpl.scene.scene import Scene
 from refimpl.sensitivities.difference_quotients import (
-    MEAN_AREA,
     NUMBERS,
     area_bound,
     difference_quotients,
@@ -132,18 +131,16 @@ def grid_sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | No
     solved = {name: derivatives for name, (derivatives, _) in quotients.items()}
     loose = {name: area_bound(solution, values[name], span) for name, (_, span) in quotients.items()}
 
-    def areas(area: str) -> dict[str, tuple[float, float]]:
-        """Derivatives of an area, with their scatter."""
-        counted = {name: (derivatives[area], loose[name]) for name, derivatives in solved.items()}
-        edge = EdgeMotion(fixed, counted["load"], answers["load"].pressure)
-        return {
-            name: counted[name]
-            if name in counted and (yields or name != "load")
-            else edge.derivative(answers[name].pressure)
-            for name in values
-        }
-
-    return _gathered(scene, solution, answers, areas(NUMBERS[1]), areas(MEAN_AREA), solved)
+    # derivatives of the area, with their scatter
+    counted = {name: (derivatives[NUMBERS[1]], loose[name]) for name, derivatives in solved.items()}
+    edge = EdgeMotion(fixed, counted["load"], answers["load"].pressure)
+    areas = {
+        name: counted[name]
+        if name in counted and (yields or name != "load")
+        else edge.derivative(answers[name].pressure)
+        for name in values
+    }
+    return _gathered(scene, solution, answers, areas, solved)
 
 
 def _check(scene: Scene, solution: Solution) -> None:
@@ -186,19 +183,18 @@ def _gathered(
     solution: Solution,
     answers: Mapping[str, Answer],
     areas: Mapping[str, tuple[float, float]],
-    mean_areas: Mapping[str, tuple[float, float]],
     solved: Mapping[str, Mapping[str, float]],
 ) -> Sensitivity:
     load, dmu_dA = scene.load, friction_per_area(scene.friction, scene.load)
     derivatives: dict[str, dict[str, float]] = {number: {} for number in NUMBERS}
     scatter: dict[str, dict[str, float]] = {number: {} for number in NUMBERS}
     for name, answer in answers.items():
-        (area, loose), (mean_area, mean_loose) = areas[name], mean_areas[name]
-        friction = answer.friction / load + dmu_dA * mean_area
+        area, loose = areas[name]
+        friction = answer.friction / load + dmu_dA * area
         if name == "load":
             friction -= solution.friction_coefficient_corrected / load
         found = (friction, area, answer.peak, answer.binormal)
-        spreads = dmu_dA * mean_loose, loose, answer.torn, 0.0
+        spreads = dmu_dA * loose, loose, answer.torn, 0.0
         for number, derivative, spread in zip(NUMBERS, found, spreads, strict=True):
             # the fixed set has no contact at new places; where two solves exist, their difference is included
             apart = abs(derivative - solved[name][number]) if name in solved else 0.0
@@ -209,7 +205,7 @@ def _gathered(
         derivatives=derivatives,
         scatter=scatter,
         residual=max(answer.residual for answer in answers.values()),
-        edge_growth={name: dmu_dA * area for name, (area, _) in mean_areas.items()},
+        edge_growth={name: dmu_dA * area for name, (area, _) in areas.items()},
     )
 
 
