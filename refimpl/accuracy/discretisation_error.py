@@ -30,13 +30,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from refimpl.accuracy.bayesian_line import DEFAULT_ORDER, Bias, Estimate, Prior, fit_line
-from refimpl.accuracy.contact_edge import (
-    EDGE_SIZE,
-    EDGE_SIZE_SPREAD,
-    OBLONG_SPREAD,
-    SINGLE_EXCESS,
-    single_element_share,
-)
+from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD, single_element_share
 from refimpl.accuracy.first_contact import (
     HERTZ_EXPONENTS,
     at_first_contact,
@@ -59,10 +53,12 @@ _LEAST_SHARE = 1e-6  # in place of zero
 _LEAST_RESOLVED = (
     0.2  # share of gaps that are not single elements: the error of a mean gap does not exceed it
 )
-_WAVES = 1.5  # scatter of areas over waviness; the likeliest on 1500 scenes is 1.34
 _SLOPES = 2  # power of the share that is not single elements, which divides the scatter of slopes
 
-AREA = Prior(0.165, 6.0)  # unit: `area_scatter`
+AREA = Prior(1.0, 6.0)  # unit: `area_scatter`
+EDGE_SCATTER, UNEVEN_SCATTER = 0.03, 0.46  # elements per face, and per uneven one
+_ALONE = 5.5  # power of the share of single elements: patches of 2 x 2 have bars of all their area
+STRAIGHT_LEFT = 0.42  # of `straight_scatter`, beyond the mean excess
 BULK = Prior(0.003, 1.0)  # friction without tau's share; unit: value (edge / area)^1.5
 PEAK = Prior(0.008, 2.5)  # unit: the peak's curvature drop
 # scatter of p_max where straight edges move as a whole, over its value and their share of the area squared:
@@ -78,6 +74,7 @@ BORDER_BOUND = 0.13
 SLOPE_SHARE = 0.2
 # standard deviation of mu by slopes under that pressure, over border fraction and rms slope: the errors there
 BORDER_SLOPES = 0.1
+PLASTIC_SINGLE = 1.5  # further excess of single elements at the hardness, over that of their edge
 PLASTIC_COUNT = 0.36  # 95 % bound of the area at the hardness, over the root of its edge elements
 # scatter of the approach over `gap_scatter`, and of a gap's straight edges over an area's: bars hold 95 % of
 # 138 nearly full contacts and of 229 grooves
@@ -296,14 +293,8 @@ def discretisation(results: Sequence[GridFeatures]) -> dict[str, dict[str, float
 
 def _area(grids: _Grids) -> Estimate:
     """Contact area: the excess along the edge is a regressor, and the scatter is that of a count."""
-    bias = Bias(grids.each(lambda result: result.excess_unit), EDGE_SIZE, edge_size_spread(grids.results[-1]))
+    bias = Bias(grids.each(lambda result: result.excess), 1.0, EDGE_SIZE_SPREAD / EDGE_SIZE)
     return grids.smooth(grids.found("contact_area"), AREA, grids.each(area_scatter), bias=bias)
-
-
-def edge_size_spread(fine: GridFeatures) -> float:
-    """Return the standard deviation of the excess over its unit, wider by short waves and oblong elements."""
-    waves, oblong = math.hypot(1.0, _WAVES * fine.waviness), math.log(fine.grid.aspect)
-    return math.hypot(EDGE_SIZE_SPREAD * waves, OBLONG_SPREAD * oblong)
 
 
 def _plastic_area(fine: GridFeatures) -> Estimate:
@@ -314,19 +305,25 @@ def _plastic_area(fine: GridFeatures) -> Estimate:
     area, edge, dA = fine.numbers.get("plastic_area", 0.0), fine.plastic_edge, fine.grid.element_area
     counted = math.sqrt(edge / EDGE_SHARE * dA * fine.symmetry_multiplicity) if edge > 0 else 0.0
     along = 0.5 * dA * math.sqrt(fine.plastic_straight.squares)
-    excess = edge * (1 + SINGLE_EXCESS * single_element_share(edge, area) ** 2)
+    excess = edge * (1 + PLASTIC_SINGLE * single_element_share(edge, area) ** 2)
     return Estimate(area, excess + math.hypot(PLASTIC_COUNT * counted, along))
 
 
 def area_scatter(result: GridFeatures) -> float:
-    """Return the unit of the area's scatter (m^2): the root of a count of edge elements and undecided ones.
+    """Return the standard deviation of the area about its mean excess (m^2).
 
-    Symmetric ones come in and out together, and short waves of the pressure add to that.
+    Faces and undecided elements scatter as a count of which symmetric ones come in and out together, and
+    uneven faces along a straight edge do. Of other straight edges the mean excess has the greater part. Where
+    elements stand alone, nothing says how much of each is in contact.
     """
-    elements = max(result.edge, 0.0) / EDGE_SHARE + result.undecided
-    together = result.symmetry_multiplicity + (_WAVES * result.waviness) ** 2
-    counted = math.sqrt(elements * result.grid.element_area * together)
-    return math.hypot(counted, straight_scatter(result) / AREA.scatter)
+    dA, area, uneven = result.grid.element_area, result.numbers["contact_area"], result.offset.uneven
+    faces, straight = max(result.edge, 0.0) / EDGE_SHARE / dA, straight_scatter(result) / dA
+    alone = area / dA * single_element_share(result.edge, area) ** _ALONE
+    together = EDGE_SCATTER**2 * (faces + result.undecided / dA) + alone
+    variance = together * result.symmetry_multiplicity + (STRAIGHT_LEFT * straight) ** 2
+    if uneven:
+        variance += UNEVEN_SCATTER**2 * uneven * (1 + (straight / STRAIGHT_SCATTER) ** 2 / faces)
+    return math.sqrt(variance) * dA
 
 
 def straight_share(result: GridFeatures) -> float:

@@ -11,10 +11,10 @@ import numpy as np
 from refimpl.accuracy.contact_edge import (
     BORDER_EXCESS,
     EDGE_SIZE,
-    SINGLE_EXCESS,
+    NO_OFFSET,
     STRAIGHT_EXCESS,
-    YIELDED_EXCESS,
-    single_element_share,
+    EdgeOffset,
+    edge_offset,
 )
 from refimpl.accuracy.iteration_error import CORRECTED, merged, reported_numbers
 from refimpl.accuracy.peak import NO_PEAK, Peak, deepest, highest, on_crest
@@ -22,7 +22,7 @@ from refimpl.grid import Array, Grid, inner, second_differences
 from refimpl.grid.straight_edges import NO_STRAIGHT_EDGES, StraightEdges, straight_edges
 from refimpl.grid.symmetry import symmetry_multiplicity
 from refimpl.model.certificate import State
-from refimpl.model.forces import EDGE_SHARE, perimeter_corrected_area
+from refimpl.model.forces import perimeter_corrected_area
 from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
@@ -44,6 +44,7 @@ class GridFeatures:
     slope_sampling_error : how far slopes within elements leave mu open
     dmu_dA : ``tau / N`` (1/m^2)
     parts : uncertainties that the grid's own solution states (iteration, active set, neglected terms)
+    offset : of the contact's edge within its elements
     depth : how far tractions pressed the contact in (m)
     shear_to_normal_ratio : ``|c / a| tau A / N``: tau's displacement over the pressure's
     plastic_edge : the like along the edge of the elements at the hardness (m^2)
@@ -71,6 +72,7 @@ class GridFeatures:
     slope_sampling_error: float
     dmu_dA: float
     parts: Mapping[str, Mapping[str, float]]
+    offset: EdgeOffset = NO_OFFSET
     depth: float = 0.0
     shear_to_normal_ratio: float = 0.0
     plastic_edge: float = 0.0
@@ -106,24 +108,17 @@ class GridFeatures:
 
     @property
     def excess(self) -> float:
-        """Mean excess of the counted contact area along its edge (m^2)."""
-        return EDGE_SIZE * self.excess_unit
-
-    @property
-    def excess_unit(self) -> float:
-        """Area (m^2) of which that is `EDGE_SIZE` in the mean.
+        """Mean excess of the counted contact area along its edge (m^2), which may be negative.
 
         Elements at the hardness carry as much as their area can: the excess is at most what others do not.
         """
-        area, face = self.numbers["contact_area"], EDGE_SHARE * self.grid.element_area
+        area, dA = self.numbers["contact_area"], self.grid.element_area
         if not area > 0:
             return 0.0
-        gap, single = self.grid.nominal_area - area, single_element_share
-        around = 1 + SINGLE_EXCESS * (single(self.edge, area) ** 2 + single(self.edge, gap) ** 2)
-        around += YIELDED_EXCESS * self.numbers.get("plastic_area", 0.0) / area
-        border = BORDER_EXCESS * self.border_fraction * area * max(gap, 0.0) / self.grid.nominal_area
-        unit = around * self.edge + STRAIGHT_EXCESS * self.straight.faces * face + EDGE_SHARE * border
-        return unit if self.unfilled is None else min(unit, self.unfilled / EDGE_SIZE)
+        border = self.border_fraction * area * (1 - area / self.grid.nominal_area)
+        found = EDGE_SIZE * self.edge + self.offset.excess * dA
+        found += STRAIGHT_EXCESS * self.straight.faces * dA + BORDER_EXCESS * border
+        return found if self.unfilled is None else min(found, self.unfilled)
 
     @property
     def corrected(self) -> dict[str, float]:
@@ -152,6 +147,7 @@ class GridFeatures:
             grid=grid,
             numbers=reported_numbers(problem, state),
             edge=state.contact_area - state.contact_area_corrected,
+            offset=edge_offset(state.pressure, state.clearance, grid),
             symmetry_multiplicity=symmetry_multiplicity(state.contact, grid),
             peak=pressure_peak(problem, state),
             first_contact=first_contact(problem),

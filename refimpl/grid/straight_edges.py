@@ -24,6 +24,7 @@ Step = tuple[int, int]
 
 _OUTSIDE = 2
 _SHORTEST = 3  # faces; a shorter run is never longer than those at its ends
+_CROSSING = 2  # faces of a run where an edge crosses the axis
 _AXES: tuple[tuple[Step, Step], ...] = ((0, 1), (1, 0)), ((1, 0), (0, 1))
 _BETWEEN: tuple[tuple[Step, Step], ...] = (
     ((1, 1), (0, 1)), ((1, -1), (0, 1)),
@@ -38,7 +39,7 @@ _BETWEEN: tuple[tuple[Step, Step], ...] = (
 class StraightEdges:
     """Straight edges by number of ``runs`` and sum of ``squares`` of their lengths.
 
-    ``faces`` are those along the axes that a run has beyond three: from there on edges run along the axis
+    ``faces`` are those along the axes that a run has beyond two: from there on edges run along the axis
     rather than between the axes. Where a run closes on itself all of them count.
     """
 
@@ -70,7 +71,7 @@ def straight_edges(contact: Mask, grid: Grid) -> StraightEdges:
         field = np.pad(field, padding, constant_values=_OUTSIDE)
     lengths += [_Runs.of(field, v, w).excess(_Runs.of(field, w, v)) for v, w in _BETWEEN]
     straight = np.concatenate(lengths)
-    faces = sum(int(runs.beyond(_SHORTEST).sum()) for runs in axes)
+    faces = sum(int(runs.beyond(_CROSSING).sum()) for runs in axes)
     return StraightEdges(faces, int(np.count_nonzero(straight)), int((straight**2).sum()))
 
 

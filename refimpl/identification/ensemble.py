@@ -25,6 +25,7 @@ from refimpl.identification.forward import Forward, Response
 from refimpl.scene.scene import Body, Scene
 
 MIN_REALISATIONS = 3
+_AVERAGED = "mu", "numerical", "shared", "contact_edge", "contact_fraction"  # fields of a response
 _SEED_STEP = 1000  # between realisations: far from the seeds of both bodies
 
 
@@ -63,18 +64,14 @@ def mean_response(responses: Sequence[Response]) -> Response:
     if len(responses) == 1:
         return responses[0]
 
-    def mean(name: str) -> float:
-        return float(np.mean([getattr(one, name) for one in responses]))
-
     n = len(responses)
+    means: dict[str, Any] = {
+        name: float(np.mean([getattr(one, name) for one in responses])) for name in _AVERAGED
+    }
     return replace(
         responses[0],
-        mu=mean("mu"),
+        **means,
         slopes=tuple(map(float, np.mean([one.slopes for one in responses], axis=0))),
-        numerical=mean("numerical"),
-        shared=mean("shared"),
-        contact_edge=mean("contact_edge"),
-        contact_fraction=mean("contact_fraction"),
         border=max(one.border for one in responses),
         plastic=max(one.plastic for one in responses),
         pressures=tuple(p for one in responses for p in one.pressures),

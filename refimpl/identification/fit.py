@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
+from scipy.optimize import lsq_linear
 from scipy.stats import chi2
 
 from refimpl.grid import Array
@@ -212,11 +212,7 @@ def _bounded(design: Array, wanted: Array, free: Array, scale: Array) -> Array:
     high = np.concatenate([np.full(BOUNDED, np.inf), _LONGEST / scale[BOUNDED:]])
     if np.all((free >= low) & (free <= high)):
         return free
-    start = np.clip(free, low + 1e-12, high - 1e-12)
-    found = least_squares(
-        lambda x: design @ x - wanted, start, jac=lambda x: design, bounds=(low, high), xtol=1e-12
-    )
-    return np.select([found.active_mask < 0, found.active_mask > 0], [low, high], found.x)
+    return np.asarray(lsq_linear(design, wanted, (low, high), method="bvls", tol=1e-12).x)
 
 
 def shares(rows: Sequence[Row], fitted: Fit, inputs: Sequence[Mapping[str, float]]) -> dict[str, Array]:

@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.accuracy.discretisation_error import edge_size_spread
+from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD
 from refimpl.driver.solve import solve
 from refimpl.grid import Array
 from refimpl.scene.parameters import parameters, with_parameter
 from refimpl.scene.scene import Scene
-from refimpl.sensitivities.sensitivity import difference_quotients, friction_slopes, grid_sensitivity
+from refimpl.sensitivities.difference_quotients import difference_quotients
+from refimpl.sensitivities.sensitivity import friction_slopes, grid_sensitivity
 from refimpl.solution.solution import Solution
 
 COVERAGE = 1.959963984540054  # half-width of 95 % over the standard uncertainty, normal distribution
@@ -132,8 +133,8 @@ def _response(
         )
     inputs, solves = _inputs(scene, solution, tolerances)
     by_tau, by_beta = friction_slopes(scene, solution)
-    features, excess = solution.features, solution.features.excess
-    factor = COVERAGE * edge_size_spread(features) * features.excess_unit
+    excess = solution.features.excess
+    factor = COVERAGE * EDGE_SIZE_SPREAD / EDGE_SIZE * abs(excess)
     slopes = (by_tau, by_beta, *(_log_slope(scene, solution, name) for name in further))
     parts = dict(solution.uncertainty["friction_coefficient_corrected"])
     edge = parts.pop("active set", 0.0)

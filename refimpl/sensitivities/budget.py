@@ -29,8 +29,9 @@ from refimpl.errors import InputError, require_number
 from refimpl.model.forces import facet_resultants
 from refimpl.scene.parameters import check_tolerances
 from refimpl.scene.scene import Scene
+from refimpl.sensitivities.difference_quotients import NUMBERS, solved_again
 from refimpl.sensitivities.half_space import half_space_error
-from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity, sensitivity, solved_again
+from refimpl.sensitivities.sensitivity import Sensitivity, sensitivity
 from refimpl.solution.solution import Solution
 
 

@@ -20,7 +20,7 @@ from refimpl.half_space.boundary_perturbation import gap_changes
 from refimpl.half_space.model_form import FINITE_STRAIN, SECOND_ORDER, contact_of, steepness
 from refimpl.scene.discretise import discretise
 from refimpl.scene.scene import Body, Scene
-from refimpl.sensitivities.sensitivity import solved_again
+from refimpl.sensitivities.difference_quotients import solved_again
 from refimpl.solution.solution import Solution
 from refimpl.surfaces import ArraySurface
 

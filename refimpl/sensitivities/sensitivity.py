@@ -12,9 +12,6 @@ constant, and on a grid it is a count. It is found in two ways, and ``tau dA`` i
   over two full solves for each. So it is for all parameters where pressures reach the hardness: there the
   edge has no such growth.
 
-The step of these solves is where the scatter of counted elements and the third derivative cost as much:
-``h^3 = sigma / (2 sqrt(2) C)`` for a relative scatter sigma and a cubic term ``C h^3``.
-
 The scatter stated beside a derivative (that of the area through tau beside friction) has in squares:
 elements counted in two solves, the cubic term, the comparison of the edge with 5 x 5 or with 9 x 9 elements,
 for the load and for surfaces the difference of the fixed set's answer and that of the two solves, the
@@ -26,35 +23,27 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from typing import TypeVar
 
 import numpy as np
 
-from refimpl.accuracy.discretisation_error import AREA, area_scatter
-from refimpl.driver.solve import solve
 from refimpl.errors import InputError, require_one_of
-from refimpl.grid import Array
 from refimpl.model.friction import friction_per_area
-from refimpl.model.problem import Problem, Terms
-from refimpl.scene.discretise import discretise
-from refimpl.scene.parameters import differentiable_parameters, parameters, with_parameter
+from refimpl.model.problem import Terms
+from refimpl.scene.parameters import differentiable_parameters, parameters
 from refimpl.scene.scene import Scene
+from refimpl.sensitivities.difference_quotients import (
+    NUMBERS,
+    area_bound,
+    difference_quotients,
+    solved_again,
+)
 from refimpl.sensitivities.edge_motion import EdgeMotion
+from refimpl.sensitivities.fixed_answer import Answer, fixed_answer
 from refimpl.sensitivities.fixed_contact import FixedContact
 from refimpl.solution.solution import Solution
-
-NUMBERS = ("friction_coefficient_corrected", "contact_area_corrected", "max_pressure", "binormal_force")
-_MEAN_AREA = "area without the mean excess"  # friction takes its share by tau of this one
-_STEP = 1e-4  # relative, of parameters: smooth at a fixed set, so the quotient errs by 1e-8
-_STRIDES = 0.01, 0.1  # relative steps of parameters in full solves, least and most
-_CUBIC, _MOST_CUBIC = 2.0, 4.0  # C of areas over the logarithm of a parameter: typical, 95 % (5 fits on 512)
-_SHIFT = 0.1  # correlation lengths by which a change of the length may move the surface at the far border
-_TIED = 1e-6  # share of p_max within which pressures tie: symmetric scenes, apart from slopes
-_SOLVED = 1e-3  # relative residual of a linear solve, at most: the digits of a derivative
-_Found = TypeVar("_Found")
 
 
 @dataclass(frozen=True)
@@ -133,38 +122,25 @@ def grid_sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | No
     if names is not None:
         values = {name: value for name, value in values.items() if name in ("load", *names)}
     excess = solution.features.excess
-    answers = {name: _answer(scene, base, fixed, name, value, excess) for name, value in values.items()}
+    answers = {name: fixed_answer(scene, base, fixed, name, value, excess) for name, value in values.items()}
     quotients = {
         name: difference_quotients(scene, solution, name, value)
         for name, value in values.items()
         if name == "load" or ".surface" in name or yields
     }
     solved = {name: derivatives for name, (derivatives, _) in quotients.items()}
-    loose = {name: _loose(solution, values[name], span) for name, (_, span) in quotients.items()}
+    loose = {name: area_bound(solution, values[name], span) for name, (_, span) in quotients.items()}
 
-    def areas(area: str) -> dict[str, tuple[float, float]]:
-        """Derivatives of an area, with their scatter."""
-        counted = {name: (derivatives[area], loose[name]) for name, derivatives in solved.items()}
-        edge = EdgeMotion(fixed, counted["load"], answers["load"].pressure)
-        return {
-            name: counted[name]
-            if name in counted and (yields or name != "load")
-            else edge.derivative(answers[name].pressure)
-            for name in values
-        }
-
-    return _gathered(scene, solution, answers, areas(NUMBERS[1]), areas(_MEAN_AREA), solved)
-
-
-def _count_scatter(solution: Solution) -> float:
-    """Standard deviation of a counted area (m^2)."""
-    return AREA.scatter * area_scatter(solution.features)
-
-
-def _loose(solution: Solution, value: float, span: float) -> float:
-    """95 % bound of an area's derivative by two solves: elements counted in both, and the cubic term."""
-    cubic = _MOST_CUBIC * (0.5 * span / value) ** 2 * solution.contact_area / abs(value)
-    return math.hypot(2 * math.sqrt(2) * _count_scatter(solution) / span, cubic)
+    # derivatives of the area, with their scatter
+    counted = {name: (derivatives[NUMBERS[1]], loose[name]) for name, derivatives in solved.items()}
+    edge = EdgeMotion(fixed, counted["load"], answers["load"].pressure)
+    areas = {
+        name: counted[name]
+        if name in counted and (yields or name != "load")
+        else edge.derivative(answers[name].pressure)
+        for name in values
+    }
+    return _gathered(scene, solution, answers, areas, solved)
 
 
 def _check(scene: Scene, solution: Solution) -> None:
@@ -202,173 +178,23 @@ def _terms(solution: Solution) -> Terms:
     return replace(solution.problem.terms, coupled=coupled, tilted=tilted)
 
 
-@dataclass(frozen=True, eq=False)
-class _Answer:
-    """Derivatives at the fixed set: pressures (window's shape), their peak, F and Q over the parameter.
-
-    Of peaks that tie the middle one counts, as for a central difference; ``torn`` is how far others are off.
-    """
-
-    pressure: Array
-    peak: float
-    torn: float
-    friction: float
-    binormal: float
-    residual: float
-
-
-def _answer(
-    scene: Scene, base: Problem, fixed: FixedContact, name: str, value: float, excess: float
-) -> _Answer:
-    """Answer to a parameter; its friction is without tau on the mean ``excess`` of the edge (m^2)."""
-    (low, below), (high, above) = _both_sides(
-        name,
-        value,
-        _STEP,
-        lambda at: _changed(scene, base, with_parameter(scene, name, at)).windowed(fixed.window),
-    )
-    span = high - low
-    residuals = [fixed.residual(problem, fixed.pressure, fixed.approach) for problem in (below, above)]
-    found = fixed.response((residuals[1] - residuals[0]) / span)
-    if not found.residual <= _SOLVED:
-        raise ArithmeticError(f"the derivative over {name} is not found: {found.residual:.1e} is left of it")
-    before, after = (
-        fixed.forces(
-            problem,
-            fixed.pressure + (at - value) * found.pressure,
-            fixed.approach + (at - value) * found.approach,
-        )
-        for problem, at in ((below, low), (above, high))
-    )
-    pressure = found.pressure
-    if fixed.capped.any():
-        pressure = np.where(fixed.capped, (above.cap - below.cap) / span, pressure)
-    tied = pressure[fixed.pressure >= (1 - _TIED) * fixed.peak]
-    return _Answer(
-        pressure=pressure,
-        peak=0.5 * float(tied.max() + tied.min()),
-        torn=0.5 * float(np.ptp(tied)),
-        friction=(after.friction - before.friction - (above.friction.jump - below.friction.jump) * excess)
-        / span,
-        binormal=(after.binormal - before.binormal) / span,
-        residual=found.residual,
-    )
-
-
-def _both_sides(
-    name: str, value: float, step: float, make: Callable[[float], _Found]
-) -> tuple[tuple[float, _Found], tuple[float, _Found]]:
-    """Return the values a relative step below and above a parameter, each with what is made of it.
-
-    Where one side is refused the value itself takes its place. Raises `InputError` where both are.
-    """
-    found: dict[float, _Found] = {}
-    for at in (value * (1 - step), value * (1 + step)):
-        with suppress(InputError):
-            found[at] = make(at)
-    if not found:
-        raise InputError(name, value, f"a value with another allowed one {step:.2g} of it below or above")
-    if len(found) == 1:
-        found[value] = make(value)
-    low, high = sorted(found)
-    return (low, found[low]), (high, found[high])
-
-
-def _changed(scene: Scene, base: Problem, changed: Scene) -> Problem:
-    """The changed scene's problem; surfaces are sampled again only where they changed."""
-    if changed.upper.surface is scene.upper.surface and changed.lower.surface is scene.lower.surface:
-        elasticity = replace(base.elasticity, pair=changed.materials)
-        return replace(base, elasticity=elasticity, friction=changed.friction, load=changed.load)
-    return discretise(changed, base.grid, base.terms)
-
-
-def difference_quotients(
-    scene: Scene, solution: Solution, name: str, value: float
-) -> tuple[dict[str, float], float]:
-    """Return each number's derivative over a parameter by two solves, and how far apart their values are.
-
-    The solves are a step to either side, or to one where the other is not allowed. Raises `ArithmeticError`
-    where one of both solves does not converge, `InputError` where neither side is allowed.
-    """
-    step, plastic = _stride(scene, solution, name, value), solution.problem.terms.plastic
-    (low, below), (high, above) = _both_sides(
-        name, value, step, lambda at: solved_again(with_parameter(scene, name, at), solution, plastic=plastic)
-    )
-    for ended in (below, above):
-        if not ended.converged:
-            raise ArithmeticError(f"a solve with {name} changed by {step:.2g} ended as {ended.status.value}")
-    span = high - low
-    ends = _numbers(above), _numbers(below)
-    return {number: (ends[0][number] - ends[1][number]) / span for number in ends[0]}, span
-
-
-def _numbers(solution: Solution) -> dict[str, float]:
-    found = {number: float(getattr(solution, number)) for number in NUMBERS}
-    return found | {_MEAN_AREA: solution.contact_area - solution.features.excess}
-
-
-def solved_again(
-    scene: Scene,
-    solution: Solution,
-    *,
-    plastic: bool | None,
-    approach: float | None = None,
-    grid: tuple[int, int] | None = None,
-) -> Solution:
-    """Solve a scene on a solution's grid, or on another one, with its terms and its tolerance."""
-    terms = solution.problem.terms
-    corrected = terms.slope_correction and not plastic
-    return solve(
-        scene,
-        grid or solution.grid.shape,
-        approach=approach,
-        oblique=terms.oblique,
-        slope_correction=corrected,
-        coupled=None if terms.slope_correction else terms.coupled,  # facet tractions include shear
-        tilted=terms.tilted,
-        plastic=plastic,
-        tolerance=solution.tolerance,
-    )
-
-
-def _stride(scene: Scene, solution: Solution, name: str, value: float) -> float:
-    """The relative step of full solves (see above).
-
-    Numbers that deform a surface about its corner move it farthest at the other border: by no more than a
-    share of its finest length.
-    """
-    sigma = _count_scatter(solution) / solution.contact_area
-    stride = float(np.clip((sigma / (2 * math.sqrt(2) * _CUBIC)) ** (1 / 3), *_STRIDES))
-    head, _, key = name.rpartition(".")
-    if key.startswith("correlation_length"):
-        return min(stride, _SHIFT * value / max(scene.lengths))
-    if key in ("lay", "anisotropy"):
-        which, _, place = head.partition(".")
-        part = getattr(scene, which).surface.parts[int(place[len("surface[") : -1])]
-        finest: float = part.detail(max(scene.lengths)).length
-        turn = abs(value) if key == "lay" else 1.0
-        return min(stride, _SHIFT * finest / max(scene.lengths) / turn)
-    return stride
-
-
 def _gathered(
     scene: Scene,
     solution: Solution,
-    answers: Mapping[str, _Answer],
+    answers: Mapping[str, Answer],
     areas: Mapping[str, tuple[float, float]],
-    mean_areas: Mapping[str, tuple[float, float]],
     solved: Mapping[str, Mapping[str, float]],
 ) -> Sensitivity:
     load, dmu_dA = scene.load, friction_per_area(scene.friction, scene.load)
     derivatives: dict[str, dict[str, float]] = {number: {} for number in NUMBERS}
     scatter: dict[str, dict[str, float]] = {number: {} for number in NUMBERS}
     for name, answer in answers.items():
-        (area, loose), (mean_area, mean_loose) = areas[name], mean_areas[name]
-        friction = answer.friction / load + dmu_dA * mean_area
+        area, loose = areas[name]
+        friction = answer.friction / load + dmu_dA * area
         if name == "load":
             friction -= solution.friction_coefficient_corrected / load
         found = (friction, area, answer.peak, answer.binormal)
-        spreads = dmu_dA * mean_loose, loose, answer.torn, 0.0
+        spreads = dmu_dA * loose, loose, answer.torn, 0.0
         for number, derivative, spread in zip(NUMBERS, found, spreads, strict=True):
             # the fixed set has no contact at new places; where two solves exist, their difference is included
             apart = abs(derivative - solved[name][number]) if name in solved else 0.0
@@ -379,7 +205,7 @@ def _gathered(
         derivatives=derivatives,
         scatter=scatter,
         residual=max(answer.residual for answer in answers.values()),
-        edge_growth={name: dmu_dA * area for name, (area, _) in mean_areas.items()},
+        edge_growth={name: dmu_dA * area for name, (area, _) in areas.items()},
     )
 
 
@@ -400,7 +226,7 @@ def friction_slopes(scene: Scene, solution: Solution) -> tuple[float, float]:
     fixed = FixedContact(base, solution.pressure, active, solution.slopes)
     found = parameters(scene)
     adhesive, pressed = (
-        _answer(scene, base, fixed, name, found[name], excess).friction / scene.load
+        fixed_answer(scene, base, fixed, name, found[name], excess).friction / scene.load
         for name in ("friction.tau", "friction.beta")
     )
     return adhesive, pressed

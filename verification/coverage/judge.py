@@ -9,10 +9,8 @@ from refimpl.accuracy.refinement import FIRST_GRIDS, longer_side, refine_until, 
 from verification.coverage.scenes import random_scene
 from verification.coverage.store import GridSolve, judged_numbers
 
-EDGE_SIZE, EDGE_SIZE_BOUND = 0.79, 0.12
-"""Of the edge in the reference: between what all grids of 200 training scenes gave by likelihood, 0.774, and
-their mean from 512 to 1024, 0.80 +- 0.01 (measured by hand); and its scatter. A disc's is 0.75 (case
-``accuracy/edge-size``)."""
+EDGE_SIZE_BOUND = 0.12
+"""Of the edge, that a reference without its mean excess is open by: three standard deviations."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,7 +82,7 @@ def _replayed(solves: Sequence[GridSolve], number: str, accuracy: float) -> Cove
 
 
 def reference_of(solves: Sequence[GridSolve], number: str) -> tuple[float, float]:
-    """The finest grid's number, without its edge's mean share, and a bound of what is left.
+    """The finest grid's number, without its edge's mean excess, and a bound of what is left.
 
     What is smooth - the peak of the parabola through the highest elements, friction without tau's share - is
     bounded by its change from the grid before. The parabola is the estimator's, on elements of half the size
@@ -98,7 +96,7 @@ def reference_of(solves: Sequence[GridSolve], number: str) -> tuple[float, float
         rest, rest_before = (
             r.numbers[number] - r.dmu_dA * r.numbers["contact_area"] for r in (finest, before)
         )
-        edge = finest.dmu_dA * finest.edge
-        return value - EDGE_SIZE * edge, EDGE_SIZE_BOUND * edge + abs(rest - rest_before)
+        bound = finest.dmu_dA * EDGE_SIZE_BOUND * finest.edge + abs(rest - rest_before)
+        return value - finest.dmu_dA * finest.excess, bound
     area = finest.numbers["contact_area"]
-    return area - EDGE_SIZE * finest.edge, EDGE_SIZE_BOUND * finest.edge
+    return area - finest.excess, EDGE_SIZE_BOUND * finest.edge

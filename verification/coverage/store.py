@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import refimpl as rf
+from refimpl.accuracy.contact_edge import EdgeOffset
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.peak import Peak
 from refimpl.accuracy.refinement import FIRST_GRIDS, longer_side
@@ -85,9 +86,9 @@ def grid_solves(path: Path) -> Iterator[GridSolve]:
 def _features(record: dict[str, Any]) -> GridFeatures:
     peaks = {name: Peak(**record[name]) for name in ("peak", "first_contact")}
     straight = {name: StraightEdges(**record[name]) for name in ("straight", "plastic_straight")}
-    grid = record["grid"]
+    grid, offset = record["grid"], EdgeOffset(*record["offset"])
     restored = rf.Grid(tuple(grid["shape"]), tuple(grid["lengths"]), grid["periodic"])
-    return GridFeatures(**{**record, **peaks, **straight, "grid": restored})
+    return GridFeatures(**{**record, **peaks, **straight, "grid": restored, "offset": offset})
 
 
 def refinements(path: Path) -> dict[int, list[GridSolve]]:

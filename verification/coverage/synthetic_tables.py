@@ -35,7 +35,8 @@ class SyntheticTable:
     """A scene with its true friction, rows with noise, a new load (N) and its true mu; the grid of a fit.
 
     ``further`` is the true value of a parameter that is fitted too: then the scene's is a first guess.
-    ``error`` is one of `ERRORS`, ``wrong`` the index of the row that it changed.
+    ``error`` is one of `ERRORS`, ``wrong`` the index of the row that it changed. ``deviates`` are the rows'
+    noise in standard uncertainties.
     """
 
     kind: str
@@ -45,6 +46,7 @@ class SyntheticTable:
     new_mu: float
     noise: float
     grid: int
+    deviates: tuple[float, ...]
     error: str = "noise"
     wrong: int | None = None
     further: float | None = None
@@ -90,12 +92,14 @@ class _Draw(Dice):
         """
         loads = map(float, np.geomspace(scene.load / span, scene.load, count))
         new_load = scene.load * self.log(1 / span, most)
-        rows = []
+        rows, deviates = [], []
         for load in loads:
             mu = true_friction(scene, load)
             u = noise * mu
-            rows.append(Row(load, max(mu + u * float(self.rng.standard_normal()), 0.0), u))
-        return SyntheticTable(kind, scene, tuple(rows), new_load, true_friction(scene, new_load), noise, grid)
+            deviates.append(float(self.rng.standard_normal()))
+            rows.append(Row(load, max(mu + u * deviates[-1], 0.0), u))
+        new_mu = true_friction(scene, new_load)
+        return SyntheticTable(kind, scene, tuple(rows), new_load, new_mu, noise, grid, tuple(deviates))
 
     def erroneous(self, table: SyntheticTable, error: str) -> SyntheticTable:
         """Return a table with one of `ERRORS` beside its noise; a drift is in the order of loads."""
@@ -142,7 +146,8 @@ def _table_of_grids(number: int) -> SyntheticTable:
         rms, length = ball.approach * draw.log(0.02, 0.2), SIDE * draw.log(0.1, 0.3)
         rough = rf.GaussianRoughness(rms, length, 2 * number)
         if kind == "self-affine ball":
-            cuts = {"long_cut": length, "roll_off": length, "short_cut": SIDE / draw.log(8, 32)}
+            short = min(SIDE / draw.log(8, 32), 0.99 * length)  # below the roll-off
+            cuts = {"long_cut": length, "roll_off": length, "short_cut": short}
             rough = rf.SelfAffineRoughness(
                 hurst=float(draw.rng.uniform(0.6, 0.9)), rms=0.5 * rms, seed=2 * number, **cuts
             )

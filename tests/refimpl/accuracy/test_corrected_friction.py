@@ -26,7 +26,7 @@ def ball(side: float = SIDE, law: rf.Friction | None = None) -> rf.Scene:
     )
 
 
-def test_against_hertz_the_mean_error_is_a_third_and_each_within_its_bar() -> None:
+def test_against_hertz_errors_are_a_fifth_and_each_within_its_bar() -> None:
     """mu of a flat ball is ``tau pi a^2 / P + beta``; domains of several sizes move its edge."""
     exact = TAU * HERTZ_AREA / LOAD + BETA
     solved = [rf.solve(ball(SIDE * (1 + 0.013 * k)), 48, oblique=False) for k in range(12)]
@@ -34,7 +34,7 @@ def test_against_hertz_the_mean_error_is_a_third_and_each_within_its_bar() -> No
         np.array([getattr(s, name) - exact for s in solved])
         for name in ("friction_coefficient", "friction_coefficient_corrected")
     )
-    assert abs(corrected.mean()) < raw.mean() / 3
+    assert np.sqrt(np.mean(corrected**2)) < np.sqrt(np.mean(raw**2)) / 5
     assert all(
         abs(off) <= s.error("friction_coefficient_corrected")
         for s, off in zip(solved, corrected, strict=True)
@@ -47,7 +47,6 @@ def test_only_tau_acts_on_the_excess() -> None:
     share = TAU * s.features.excess / LOAD
     assert s.friction_coefficient_corrected == pytest.approx(s.friction_coefficient - share, rel=1e-12)
     assert s.friction_force_corrected == pytest.approx(s.friction_coefficient_corrected * LOAD, rel=1e-9)
-    assert s.features.excess == pytest.approx(0.78 * (s.contact_area - s.contact_area_corrected), rel=0.1)
     without = rf.solve(ball(law=rf.Friction(0.0, BETA)), 32)
     assert without.friction_coefficient_corrected == without.friction_coefficient
     assert without.friction_force_corrected == without.friction_force

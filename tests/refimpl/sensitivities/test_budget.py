@@ -14,7 +14,8 @@ import refimpl as rf
 from refimpl.model.forces import facet_resultants
 from refimpl.scene.scene_file import read_tolerances, scene_to_toml
 from refimpl.sensitivities.budget import Budget, Budgets, budget
-from refimpl.sensitivities.sensitivity import NUMBERS, Sensitivity
+from refimpl.sensitivities.difference_quotients import NUMBERS
+from refimpl.sensitivities.sensitivity import Sensitivity
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 SCENE = rf.Scene(

@@ -12,9 +12,9 @@ import pytest
 import refimpl as rf
 from refimpl.scene.parameters import check_tolerances, differentiable_parameters, parameters, with_parameter
 from refimpl.sensitivities.budget import budget
+from refimpl.sensitivities.difference_quotients import NUMBERS
 from refimpl.sensitivities.fixed_contact import FixedContact, LinearResponse
 from refimpl.sensitivities.sensitivity import (
-    NUMBERS,
     Sensitivity,
     friction_slopes,
     grid_sensitivity,
@@ -305,7 +305,7 @@ def test_solves_that_do_not_converge_are_not_compared(
 ) -> None:
     ended = replace(solution, status=rf.Status.STAGNATED)
     monkeypatch.setattr(
-        sys.modules["refimpl.sensitivities.sensitivity"], "solve", lambda *args, **options: ended
+        sys.modules["refimpl.sensitivities.difference_quotients"], "solve", lambda *args, **options: ended
     )
     with pytest.raises(ArithmeticError, match=r"load changed by 0\.1 ended as stagnated"):
         sensitivity(ROUGH, solution)
@@ -417,7 +417,7 @@ def test_a_value_without_allowed_neighbours_is_named(
     def refuse(*_: Any) -> rf.Scene:
         raise rf.InputError("load", 77.0, "less")
 
-    monkeypatch.setattr(sys.modules["refimpl.sensitivities.sensitivity"], "with_parameter", refuse)
+    monkeypatch.setattr(sys.modules["refimpl.sensitivities.fixed_answer"], "with_parameter", refuse)
     with pytest.raises(rf.InputError, match=r"load = 70\.0: expected a value with another allowed one"):
         sensitivity(ROUGH, solution)
 

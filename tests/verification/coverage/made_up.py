@@ -22,7 +22,7 @@ def grid_solve(M: int, *, wrong: float = 0.0, seed: int = 3, **other: Any) -> Gr
     h, radius = SIDE / M, 0.2 * SIDE
     edge, limit = EDGE_SHARE * 8 * radius * h, np.pi * radius**2
     numbers = dict.fromkeys(REPORTED, 1.0) | {"plastic_area": 0.0}
-    area = (limit + 0.85 * edge) * (1 + (wrong if M in GRIDS[:-1] else 0.0))
+    area = (limit + 0.75 * edge) * (1 + (wrong if M in GRIDS[:-1] else 0.0))
     numbers |= {"contact_area": area, "contact_area_corrected": area - edge, "max_pressure": 1 - 1e-3 / M}
     numbers["friction_coefficient"] = 0.1 + 1e5 * area
     result = GridFeatures(

@@ -59,14 +59,14 @@ def test_an_accuracy_that_the_grids_cannot_give_is_not_met() -> None:
 
 
 def test_references_known_values() -> None:
-    """Whole elements add 0.79 of the edge to the area, give or take 0.12, and tau on it to mu."""
+    """Whole elements add the mean excess to the area, give or take 0.12 of the edge, and tau on it to mu."""
     before, finest = grid_solve(256), grid_solve(512)
-    area, edge = finest.result.numbers["contact_area"], finest.result.edge
+    area, edge, excess = finest.result.numbers["contact_area"], finest.result.edge, finest.result.excess
     both = [grid_solve(128), before, finest]
-    assert reference_of(both, "contact_area") == (area - 0.79 * edge, 0.12 * edge)
+    assert reference_of(both, "contact_area") == (area - excess, 0.12 * edge)
     assert reference_of(both, "contact_area_corrected") == reference_of(both, "contact_area")
     mu, bound = reference_of(both, "friction_coefficient")
-    assert mu == pytest.approx(0.1 + 1e5 * (area - 0.79 * edge), rel=1e-14)
+    assert mu == pytest.approx(0.1 + 1e5 * (area - excess), rel=1e-14)
     assert bound == pytest.approx(1e5 * 0.12 * edge, rel=1e-9)  # without tau's share mu is 0.1
     higher = replace(finest, result=replace(finest.result, peak=Peak(1.25, 1e-3, 0.0)))
     assert reference_of([before, higher], "max_pressure") == (1.25, 0.25)
