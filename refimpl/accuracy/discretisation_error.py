@@ -58,7 +58,7 @@ _SLOPES = 2  # power of the share that is not single elements, which divides the
 AREA = Prior(1.0, 6.0)  # unit: `area_scatter`
 EDGE_SCATTER, UNEVEN_SCATTER = 0.03, 0.46  # elements per face, and per uneven one
 _ALONE = 5.5  # power of the share of single elements: patches of 2 x 2 have bars of all their area
-STRAIGHT_LEFT = 0.42  # of `straight_scatter`, beyond the mean excess
+STRAIGHT_LEFT = 0.42  # share of `straight_scatter` beyond the mean excess
 BULK = Prior(0.003, 1.0)  # friction without tau's share; unit: value (edge / area)^1.5
 PEAK = Prior(0.008, 2.5)  # unit: the peak's curvature drop
 # scatter of p_max where straight edges move as a whole, over its value and their share of the area squared:
