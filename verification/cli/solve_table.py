@@ -30,7 +30,7 @@ QUANTITIES = (
     ("max_pressure", "maximum pressure p_max", 1e-6, "MPa"),
     ("approach", "approach", 1e6, "um"),
     ("normal_force", "normal force N", 1.0, "N"),
-    ("friction_force", "friction force F", 1.0, "N"),
+    ("friction_force_corrected", "friction force F", 1.0, "N"),
     ("binormal_force", "binormal force Q", 1.0, "N"),
 )
 
@@ -77,42 +77,22 @@ def table(solution: Solution, scene: str) -> str:
     return "\n\n".join(part for part in parts if part)
 
 
-def error_bar(solution: Solution, quantity: str) -> float:
-    """The sum of the parts of a number's uncertainty, in its unit; 0 where none is stated."""
-    return math.fsum(solution.uncertainty.get(quantity, {}).values())
-
-
 def not_usable(solution: Solution) -> list[str]:
     """Return the names of the numbers in the table whose bar exceeds half of their magnitude."""
-    shown = [attribute for attribute, *_ in QUANTITIES]
+    from refimpl.solution.display import verdict_on
+
+    names = [attribute for attribute, *_ in QUANTITIES]
     if solution.plan.includes("plastic"):
-        shown.append("plastic_area")
-    return [name for name in shown if _verdict(solution, name)]
-
-
-def _verdict(solution: Solution, quantity: str) -> str:
-    """Return "(not usable)" or nothing. Symmetry may make Q zero: its magnitude is that of the
-    tangential force, F and Q together. Without friction that of F and Q is N, and that of mu is 1.
-    """
-    from refimpl.accuracy.digits import verdict
-
-    value = getattr(solution, quantity)
-    if not math.isfinite(value):  # without contact
-        return ""
-    scale = {"binormal_force": math.hypot(solution.friction_force, solution.binormal_force)}
-    if not solution.traction.any():  # frictionless
-        scale = dict.fromkeys(("friction_force", "binormal_force"), solution.normal_force)
-        scale |= dict.fromkeys(("friction_coefficient_corrected", "friction_coefficient"), 1.0)
-    return verdict(error_bar(solution, quantity), scale.get(quantity, value))
+        names.append("plastic_area")
+    return [name for name in names if verdict_on(solution, name)]
 
 
 def _row(solution: Solution, quantity: str, name: str, factor: float, unit: str) -> list[str]:
     """Return a row of the table: value and bar with the digits that the bar leaves, and the verdict."""
-    from refimpl.accuracy.digits import bar_of, digits_of
+    from refimpl.solution.display import shown
 
-    error = error_bar(solution, quantity) * factor
-    value = digits_of(getattr(solution, quantity) * factor, error)
-    return [name, value, f"{bar_of(error)} {_verdict(solution, quantity)}".rstrip(), unit]
+    value, *rest = shown(solution, quantity, factor)
+    return [name, value, " ".join(rest), unit]
 
 
 def _change(effect: Mapping[str, float]) -> str:
