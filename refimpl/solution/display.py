@@ -62,7 +62,7 @@ def html(solution: Record) -> str:
 
 
 def shown(solution: Record, name: str, factor: float = 1.0) -> list[str]:
-    """Return a number, its bar, and "(not usable)", each where there is one; ``factor`` from SI to the unit."""
+    """Return a number, its bar and "(not usable)", each where there is one; ``factor``: SI to the unit."""
     error = solution.error(name) * factor
     texts = digits_of(getattr(solution, name) * factor, error), bar_of(error), verdict_on(solution, name)
     return [text for text in texts if text]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from verification.cli.output import columns
+from verification.framework.text_table import columns
 
 if TYPE_CHECKING:
     from refimpl.sensitivities.budget import Budget, Budgets

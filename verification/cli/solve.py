@@ -26,10 +26,10 @@ from verification.cli.output import (
     files_of,
     plain,
     refusal,
-    wrapped,
 )
 from verification.cli.solve_table import document, show_finished, table
 from verification.framework.files import is_stream
+from verification.framework.text_table import wrapped
 
 if TYPE_CHECKING:
     from refimpl import Scene, Solution

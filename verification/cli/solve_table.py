@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from verification.cli.output import columns, plain, wrapped
+from verification.cli.output import plain
+from verification.framework.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from refimpl import Solution

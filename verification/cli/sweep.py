@@ -15,12 +15,11 @@ from verification.cli.output import (
     check_outputs,
     check_suffix,
     check_workers,
-    columns,
     emit,
     plain,
     refusal,
-    wrapped,
 )
+from verification.framework.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from verification.sweep.engine import Progress, Sweep

@@ -132,7 +132,8 @@ FINE = np.zeros((4, 65))
 FINE[2, 3], FINE[3, 64] = 8.0, 4.0
 MADE: Any = SimpleNamespace(
     **{name: row[0] for name, row in SHOWN.items()}, error=lambda name: SHOWN[name][1], pressure=FINE,
-    traction=FINE, friction_force=-8.0, plan=SimpleNamespace(method="dense"), status=rf.Status.CYCLED, grid="2 x 3", warnings=("a < b",),
+    traction=FINE, friction_force=-8.0,
+    plan=SimpleNamespace(method="dense"), status=rf.Status.CYCLED, grid="2 x 3", warnings=("a < b",),
 )  # fmt: skip
 
 
