@@ -41,6 +41,13 @@ def nayak(z: Array, pixel: Pixel) -> float:
     return float(np.nanvar(z)) * m4 / m2**2 if m2 > 0 else math.nan
 
 
+def _power(transform: NDArray[np.complex128]) -> Array:
+    """Squares of the magnitudes; ``abs`` would take roots and another array."""
+    power = transform.real**2
+    power += transform.imag**2
+    return power
+
+
 def _mean_square(values: Array) -> float:
     """NaN where nothing was measured: a map may have no two neighbours."""
     known = values[np.isfinite(values)]
@@ -65,11 +72,13 @@ class Autocorrelation:
         d = np.where(known, z - np.nanmean(z), 0.0)
         reach = tuple(n // 2 for n in z.shape)
         shape = tuple(scipy.fft.next_fast_len(n + m, real=True) for n, m in zip(z.shape, reach, strict=True))
-        products = scipy.fft.irfft2(np.abs(scipy.fft.rfft2(d, s=shape)) ** 2, s=shape)
-        pairs = scipy.fft.irfft2(np.abs(scipy.fft.rfft2(known.astype(float), s=shape)) ** 2, s=shape)
-        order = tuple(np.arange(-m, m + 1) for m in reach)
+        order = np.ix_(*(np.arange(-m, m + 1) for m in reach))
+        products, pairs = (
+            scipy.fft.irfft2(_power(scipy.fft.rfft2(values, s=shape)), s=shape)[order]
+            for values in (d, known)
+        )
         with np.errstate(invalid="ignore", divide="ignore"):
-            mean = np.where(pairs > 0.5, products / pairs, np.nan)[np.ix_(*order)]
+            mean = np.where(pairs > 0.5, products / pairs, np.nan)
         variance = mean[reach]
         return cls(mean / variance if variance > 0 else mean * np.nan, pixel)
 
@@ -145,16 +154,16 @@ class Spectrum:
     def of(cls, z: Array, pixel: Pixel, anisotropy: float = 1.0, lay: float = 0.0) -> Spectrum:
         """Hann's window on both axes; missing points count as the mean height."""
         windows = [np.sin(np.pi * (np.arange(n) + 0.5) / n) ** 2 for n in z.shape]
-        window = np.outer(*windows)
         known = np.isfinite(z)
-        weighted = np.where(known, z - np.nanmean(z), 0.0) * window
-        power = np.abs(scipy.fft.fft2(weighted)) ** 2 * (
-            pixel[0] * pixel[1] / float(np.sum(window[known] ** 2))
-        )
+        weighted = np.where(known, z - np.nanmean(z), 0.0)
+        weighted *= windows[0][:, None]
+        weighted *= windows[1]
+        power = _power(scipy.fft.fft2(weighted))
+        power *= pixel[0] * pixel[1] / float(windows[0] ** 2 @ known @ windows[1] ** 2)
         qx, qy = (2 * np.pi * scipy.fft.fftfreq(n, edge) for n, edge in zip(z.shape, pixel, strict=True))
         cos, sin = math.cos(lay), math.sin(lay)
         along = anisotropy * (cos * qx[:, None] + sin * qy[None, :])
-        norm = np.hypot(along, cos * qy[None, :] - sin * qx[:, None])
+        norm = np.hypot(along, cos * qy[None, :] - sin * qx[:, None], out=along)
         step = 2 * np.pi * max(1.0 / (n * edge) for n, edge in zip(z.shape, pixel, strict=True))
         last = math.pi / max(pixel)  # beyond, rings are cut by the square of the transform
         ring = np.minimum(np.rint(norm / step), last / step + 1).astype(np.intp)

@@ -27,7 +27,7 @@ from refimpl.measured.instrument_files import (
     read_or_refuse,
 )
 from refimpl.measured.reading import IMAGE, MAX_BYTES, MAX_POINTS, UNITS, Overrides, RawHeights, checked
-from refimpl.measured.text_tables import TextTable, decoded, is_triples, on_grid, read_table
+from refimpl.measured.text_tables import TextTable, encoding_of, is_triples, on_grid, read_table
 
 __all__ = ["MAX_BYTES", "MAX_POINTS", "UNITS", "Overrides", "RawHeights", "read"]
 
@@ -128,7 +128,8 @@ def _refuse_interruption(path: Path, table: TextTable) -> None:
 def _with_header(path: Path, table: TextTable, given: Overrides) -> RawHeights:
     """Text whose header says what the library knows: Gwyddion's, SPIP's, Wyko's and others."""
     library = library_for(path)
-    text = table.normalised() if table.notes or "," in table.header[-1] else decoded(path).encode()
+    changed = table.notes or "," in table.header[-1]
+    text = table.normalised() if changed else path.read_bytes().decode(encoding_of(path)).encode()
 
     def load(file: Path) -> RawHeights:
         return read_as(library, file, "asc", given, io.BytesIO(text), table.notes)
@@ -154,12 +155,12 @@ def _points(path: Path, table: TextTable, given: Overrides) -> RawHeights:
     if given.unit is None:
         allowed = f"one: {path.name} holds points x, y, z and states no unit"
         raise InputError("unit", None, allowed)
-    heights, pitch = on_grid(path, table.rows * UNITS[given.unit])
+    heights, edges = on_grid(path, table.rows)
+    pitch = edges[0] * UNITS[given.unit], edges[1] * UNITS[given.unit]
     _check_pitch(path, pitch, given)
     unit, pixel, notes = given.resolve(path.name, given.unit, pitch)
     if heights.size > MAX_POINTS:
         raise InputError("path", str(path), f"heights on a grid of at most {MAX_POINTS} points")
+    heights, notes = checked(path, heights * UNITS[given.unit]), (*table.notes, *notes)
     source, orientation = "as points x, y, z", "coordinates as the file states them"
-    return RawHeights(
-        checked(path, heights), pixel, path.name, source, unit, orientation, notes=(*table.notes, *notes)
-    )
+    return RawHeights(heights, pixel, path.name, source, unit, orientation, notes=notes)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import tracemalloc
 import warnings
 import zipfile
 from pathlib import Path
@@ -18,6 +19,7 @@ from refimpl.grid import Grid
 from refimpl.measured import MeasuredSurface, missing_points
 from refimpl.measured.readers import read
 from refimpl.measured.reading import ARRAY, IMAGE
+from refimpl.measured.text_tables import read_table
 from tests.refimpl.surfaces import instrument_writers as write
 from tests.refimpl.surfaces.instrument_writers import MAP, MISSING, NX, NY, PIXEL, Writer, sur_bytes
 
@@ -189,6 +191,18 @@ def test_separators_and_decimal_commas(tmp_path: Path, separator: str, comma: bo
     (tmp_path / "map.csv").write_text(text + "\n")
     reading = read(tmp_path / "map.csv", unit="um", pixel_size=PIXEL)
     np.testing.assert_allclose(reading.heights, z, rtol=0, atol=1e-20)
+
+
+@pytest.mark.parametrize("columns", [600, 3])
+def test_a_table_of_text_takes_at_most_four_times_its_numbers(columns: int, tmp_path: Path) -> None:
+    numbers = np.arange(360_000.0).reshape(-1, columns) % 977 / 8
+    np.savetxt(tmp_path / "a.csv", numbers, fmt="%.3f", delimiter=";")
+    tracemalloc.start()
+    found = read_table(tmp_path / "a.csv").rows
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert np.array_equal(found, numbers)
+    assert peak <= 4 * numbers.nbytes
 
 
 @pytest.mark.parametrize(
