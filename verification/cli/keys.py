@@ -121,4 +121,4 @@ def _table(found: Mapping[str, list[Key]]) -> str:
                 for key in keys
             ]
             parts.append(f"[{title}]\n{columns(rows)}")
-    return "\n\n".join(parts) or "no key has this word"
+    return "\n\n".join(parts) or "no key has this word; what is not modelled: docs/limits.md"

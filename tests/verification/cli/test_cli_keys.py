@@ -103,7 +103,7 @@ def test_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert printed.startswith("[surface, self_affine]\n  hurst")
     assert "0 < H <= 1" in printed
     assert main(["keys", "no-such-word"]) == 1
-    assert capsys.readouterr().out == "no key has this word\n"
+    assert capsys.readouterr().out == "no key has this word; what is not modelled: docs/limits.md\n"
     assert main(["keys", "tau", "--json", "-"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert [key["unit"] for key in document["friction"] if key["name"] == "tau"] == ["Pa"]
