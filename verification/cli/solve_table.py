@@ -33,6 +33,7 @@ QUANTITIES = (
     ("friction_force_corrected", "friction force F", 1.0, "N"),
     ("binormal_force", "binormal force Q", 1.0, "N"),
 )
+_RESIDUALS = {"gap": "complementarity gap", "law_violations": "law violations, elements"}
 
 
 def show_finished(interrupt: KeyboardInterrupt, scene: str) -> None:
@@ -60,7 +61,10 @@ def table(solution: Solution, scene: str) -> str:
         name = f"plastic area, {solution.plastic_share:.1%} of A"
         found.insert(3, _row(solution, "plastic_area", name, 1e6, "mm^2"))
     summary = solution.summary()
-    certificate = [[name.replace("_", " "), f"{value:.2g}"] for name, value in summary["certificate"].items()]
+    certificate = [
+        [_RESIDUALS.get(name, name.replace("_", " ")), f"{value:.2g}"]
+        for name, value in summary["certificate"].items()
+    ]
     not_modelled = [
         [term["term"], term["reason"], _change(term["effect"])]
         for term in summary["plan"]
