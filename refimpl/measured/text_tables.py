@@ -2,7 +2,7 @@
 
 One rule for a table: once it has begun, every line that is neither blank nor a comment (``#``) is one of its
 rows, of as many entries as the first. An entry is a number, a mark of NOT_MEASURED or, between separators
-other than blanks, nothing; all else is refused with its line.
+other than blanks and at the end of such a line, nothing; all else is refused with its line.
 """
 
 from __future__ import annotations
@@ -217,6 +217,8 @@ def _numbers(
             decimals |= {mark for mark in ".," if mark in line}
             line = line.replace(",", ".")
         cells = layout.cells(line)
+        if layout.separator is not None:
+            cells += [""] * (width - len(cells))
         if len(cells) != width or len(decimals) > 1:
             found = f"line {number} has {len(cells)}, the first row {width}"
             if len(decimals) > 1:
