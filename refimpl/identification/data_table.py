@@ -70,8 +70,9 @@ def read_rows(path: str | Path) -> tuple[Row, ...]:
     ``load,friction_force,u_friction_force``.
 
     SI units; ``u`` is a standard uncertainty (68 %). Optional columns: ``sliding_direction`` (rad),
-    ``sliding_offset`` (m), ``upper_file`` and ``lower_file`` (relative to the table). Lines that begin with
-    "#" are comments. Raises `InputError`, which names the line, for anything else.
+    ``sliding_offset`` (m), ``upper_file`` and ``lower_file`` (relative to the table). Semicolons or tabs may
+    separate the columns; decimal commas are read then. Lines that begin with "#" are comments. Raises
+    `InputError`, which names the line, for anything else.
     """
     path = Path(path)
     require_regular("data", path, MAX_BYTES)
@@ -88,15 +89,18 @@ def read_rows(path: str | Path) -> tuple[Row, ...]:
     ]
     if len(lines) > MAX_ROWS + 1:
         raise InputError("data", f"{len(lines) - 1} rows", f"at most {MAX_ROWS}")
+    separator = next((mark for mark in ";\t" if lines and mark in lines[0][1]), ",")
     try:
-        cells = [(k, [cell.strip() for cell in next(csv.reader([line], strict=True))]) for k, line in lines]
+        read = ((k, next(csv.reader([line], delimiter=separator, strict=True))) for k, line in lines)
+        cells = [(k, [cell.strip() for cell in row]) for k, row in read]
     except csv.Error as alien:
         raise InputError("data", str(path), f"a CSV file ({alien})") from alien
     if not cells:
         raise InputError("data", str(path), "a header line and rows: the file is empty")
     header = cells[0][1]
     quantity = _check_header(header)
-    rows = tuple(_row(header, quantity, k, line, path.parent) for k, line in cells[1:])
+    decimal = "." if separator == "," else ","
+    rows = tuple(_row(header, quantity, k, line, path.parent, decimal) for k, line in cells[1:])
     return check_rows(rows)
 
 
@@ -118,12 +122,14 @@ def _check_header(header: Sequence[str]) -> str:
     return given[0]
 
 
-def _row(header: Sequence[str], quantity: str, k: int, cells: Sequence[str], folder: Path) -> Row:
+def _row(
+    header: Sequence[str], quantity: str, k: int, cells: Sequence[str], folder: Path, decimal: str
+) -> Row:
     if len(cells) != len(header):
         raise InputError(f"data line {k}", ",".join(cells), f"{len(header)} cells, as many as columns")
     found = dict(zip(header, cells, strict=True))
     numbers = {
-        name: _number(k, name, text)
+        name: _number(k, name, text.replace(decimal, "."))
         for name, text in found.items()
         if name not in _FILES and (text or name not in _FRAME)
     }

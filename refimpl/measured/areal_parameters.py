@@ -17,6 +17,7 @@ from refimpl.grid import Array
 from refimpl.surfaces.statistics import kurtosis, rms_height, skewness
 
 Pixel = tuple[float, float]
+SLOPES = 1e-5, 10.0  # rms slopes of machined, polished and worn surfaces lie between; um for m is 1e6
 DIRECTIONS = 180  # directions of the half-circle in which the autocorrelation is followed
 
 
@@ -32,6 +33,17 @@ def mean_square_slopes(z: Array, pixel: Pixel) -> Pixel:
     """Mean squares of dz/dx and dz/dy, by differences of neighbours."""
     x, y = (_mean_square(np.diff(z, axis=k) / pixel[k]) for k in (0, 1))
     return x, y
+
+
+def implausible_slope(z: Array, pixel: Pixel) -> tuple[str, ...]:
+    """A note on an rms slope that a wrong unit of heights or pixel would make, of a map that is not flat."""
+    slope = math.sqrt(sum(mean_square_slopes(z, pixel)))
+    if slope == 0 or not math.isfinite(slope) or SLOPES[0] <= slope <= SLOPES[1]:
+        return ()
+    shown = "{:.4g} x {:.4g} m".format(*pixel)
+    return (
+        f"rms slope {slope:.2g}, beyond {SLOPES[0]:g} to {SLOPES[1]:g}: is the pixel {shown}, is unit right?",
+    )
 
 
 def nayak(z: Array, pixel: Pixel) -> float:
