@@ -16,6 +16,7 @@ from refimpl.scene.scene import Body, Scene
 
 MAX_ROWS, MAX_BYTES = 1000, 1_000_000
 MIXED_FRICTION = 50.0  # ratio of two rows' mu from which one of them is taken to be in kN
+MOST_FRICTION = 50.0  # mu of every row: rubber under its own weight has 10
 MIXED_LOADS = 300.0  # ratio of neighbouring loads, the same: no loading series leaves such a gap
 _FRICTION = {"mu": "u_mu", "friction_force": "u_friction_force"}
 _FRAME, _FILES = ("sliding_direction", "sliding_offset"), ("upper_file", "lower_file")
@@ -159,7 +160,7 @@ def check_rows(rows: Sequence[Row], unknowns: int = 2) -> tuple[Row, ...]:
     """Return the rows; raises `InputError` where the parameters cannot be found from them.
 
     As many loads, or scenes, as unknowns are required. Rows whose mu or whose loads lie so far apart that N
-    and kN are mixed are refused.
+    and kN are mixed are refused, and so are all beyond any friction, or all less than their uncertainty.
     """
     cases = {replace(row, mu=0.0, u_mu=0.0) for row in rows}
     if len(cases) < unknowns:
@@ -173,4 +174,11 @@ def check_rows(rows: Sequence[Row], unknowns: int = 2) -> tuple[Row, ...]:
     mus = sorted(row.mu for row in rows if row.mu > 0)
     if mus and mus[-1] > MIXED_FRICTION * mus[0]:
         raise InputError("data: mu", f"{mus[0]:.3g} to {mus[-1]:.3g}", "forces in N alone (N and kN mixed?)")
+    if mus and mus[0] > MOST_FRICTION:
+        raise InputError(
+            "data: mu", f"{mus[0]:.3g} to {mus[-1]:.3g}", "friction and load in N (mN, kN mixed?)"
+        )
+    if all(row.u_mu > row.mu for row in rows):
+        least = min(row.u_mu for row in rows)
+        raise InputError("data: u_mu", f"{least:.3g} or more", "uncertainties below mu itself (in per cent?)")
     return tuple(rows)

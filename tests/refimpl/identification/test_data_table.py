@@ -68,6 +68,8 @@ def test_a_file_needs_a_measured_surface() -> None:
         ("load [kN],mu,u_mu\n5,0.1,0.01\n", "in SI units"),
         ("load,load,mu,u_mu\n5,5,0.1,0.01\n", "once"),
         ("load,mu,u_mu\n0.005,0.1,0.01\n9,0.1,0.01\n", "kN mixed"),
+        ("load,friction_force,u_friction_force\n1,150,1\n5,600,4\n", "friction and load in N"),
+        ("load,mu,u_mu\n1,0.15,2\n5,0.12,2\n", "in per cent"),
         ("load,friction_force,u_friction_force\n5,0.5,0.1\n9,0.0009,0.0001\n", "N and kN mixed"),
         ('load,mu,u_mu\n"5,0.1,0.01\n', "CSV"),
         ("load,mu,u_mu\n" + "5,0.1,0.1\n" * 1000, "'1000 rows at 1 load': expected at least two"),
