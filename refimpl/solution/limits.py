@@ -255,11 +255,12 @@ def _border(evidence: Evidence) -> ModelWarning | None:
     concave = [
         name for name, sign in (("lower", 1), ("upper", -1)) if _is_concave(getattr(scene, name), sign)
     ]
-    advice = (
-        f"the {' and '.join(concave)} body is concave (sign of its radius?)"
-        if concave
-        else f"enlarge the domain{_expected_size(evidence)}"
-    )
+    if concave:
+        advice = f"the {' and '.join(concave)} body is concave (sign of its radius?)"
+    elif scene.continues:
+        advice = f"enlarge the domain{_expected_size(evidence)}"
+    else:
+        advice = "flat bodies end there; a larger domain or map, or periodic = true, has less of a border"
     text = f"contact reaches the border of the domain on {touching} elements: {advice}"
     return ModelWarning(Limit.BORDER, touching, 0, text) if touching else None
 

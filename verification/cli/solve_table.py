@@ -103,4 +103,4 @@ def _change(effect: Mapping[str, float]) -> str:
     """Return the effect of neglecting a term, in words; nothing where it is exactly zero."""
     if not any(effect.values()):
         return ""
-    return f"estimated change of mu {effect['friction']:.1e}, of A {effect['area']:.1e}"
+    return f"changes mu by about {100 * effect['friction']:.2g} %, A by {100 * effect['area']:.2g} %"
