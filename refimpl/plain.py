@@ -57,10 +57,10 @@ def integrals(shape: Any, spacing: Any, direction: float, periodic: bool) -> lis
 
 
 class Model(SimpleNamespace):
-    """Matrices of a problem, and its state: f, q, delta, slopes, the part of each element."""
+    """Matrices of a problem, and its state: f, q, delta, slopes, the part of each element, steps left."""
 
     def __init__(self, **arguments: Any) -> None:
-        super().__init__(**arguments)  # arguments of `solve`
+        super().__init__(ended="converged", **arguments)  # arguments of `solve`
         self.shape = self.z_lower.shape
         self.spacing = self.lengths[0] / self.shape[0], self.lengths[1] / self.shape[1]
         self.dA = self.spacing[0] * self.spacing[1]
@@ -73,7 +73,7 @@ class Model(SimpleNamespace):
         self.reach = 4 * self.tau * self.dA**0.5 * max(abs(self.c), self.a / 100)
         self.delta = np.inf if self.approach is None else self.approach
         self.part = np.where(self.h < self.delta, CONTACT, OPEN)
-        self.f, self.q, self.ended = np.zeros(gap.size), np.zeros(gap.size), "converged"
+        self.f, self.q, self.left = np.zeros(gap.size), np.zeros(gap.size), iter(range(750 + 75 * gap.size))
         self.set_slopes(np.zeros((2, gap.size)))
         self.set_slopes(self.deformed_slopes() if self.slopes else self.tan)
 
@@ -147,7 +147,7 @@ class Model(SimpleNamespace):
     def exchange(self, active: Array | None) -> str:
         """Exchange parts until all inequalities hold; where all at once cycle, the first (Murty 1974)."""
         fewest, patience = self.h.size + 1, 10
-        for _ in range(50 + 5 * self.h.size):
+        for _, _ in zip(range(50 + 5 * self.h.size), self.left, strict=False):  # at most 15 such
             self.solve_parts(active)
             part, v = self.part, self.v()
             clearance, near, small = v - self.delta, *(ROUNDING * abs(x).max() for x in (v - self.h, self.f))

@@ -1,7 +1,8 @@
 """Every number that the paper prints and we compute: both, the difference E, and its uncertainty u.
 
 In terms of ASME V&V 20, E is the comparison error of a replication; no experiment enters. u, at 95 %, holds
-the sampling of two ensembles and the rounding of the printed number. |E| > u is a discrepancy.
+the sampling of the paper's random surfaces and of ours, and the rounding of the printed number. |E| > u is a
+discrepancy.
 """
 
 from __future__ import annotations
@@ -21,8 +22,8 @@ Cases = Mapping[str, Case]
 
 @dataclass(frozen=True)
 class Number:
-    """A printed number and ours, both in ``unit``; ``half_width`` is our mean's 95 % interval, ``rounding``
-    half a unit of the last printed digit. ``sampled`` numbers are means of two ensembles.
+    """A printed number and ours, both in ``unit``; ``half_width`` is the 95 % half width of ours over random
+    surfaces, ``sampling`` that of the paper's, ``rounding`` half a unit of the last printed digit.
     """
 
     part: str
@@ -33,7 +34,7 @@ class Number:
     computed: float
     half_width: float
     rounding: float
-    sampled: bool = False
+    sampling: float = 0.0
 
     @property
     def difference(self) -> float:
@@ -43,7 +44,7 @@ class Number:
     @property
     def uncertainty(self) -> float:
         """u, 95 %."""
-        return math.hypot(self.half_width * (math.sqrt(2) if self.sampled else 1.0), self.rounding)
+        return math.hypot(self.half_width, self.sampling, self.rounding)
 
     @property
     def within(self) -> bool:
@@ -85,8 +86,13 @@ SINGLE = (  # part, quantity, label, unit, printed, half a unit, case, key, fact
         for k, rms in enumerate(("0.504", "1.008", "1.680"))
     ),
 )  # fmt: skip
-# Realisations behind a scatter, in the paper and here; its relative 95 % half width is 2 / sqrt(2 (n - 1)).
-SURFACES = 75
+SURFACES = 75  # realisations of an ensemble, in the paper and here
+FEWEST = 12  # realisations behind a mean of one surface's statistic here
+ONE_SURFACE = {  # relative standard deviation between surfaces of Eq. (9): 75, on 128 and 256 elements a side
+    "correlation radius": 0.072,
+    "rms slope": 0.024,
+    "largest slope": 0.080,
+}
 
 
 def numbers(cases: Cases) -> list[Number]:
@@ -104,10 +110,17 @@ def _single(cases: Cases) -> Iterator[Number]:
     for part, quantity, label, unit, printed, rounding, case, key, factor in SINGLE:
         value = number(cases[case], key) if case in cases else None
         if value is not None:
-            sampled = quantity.startswith("scatter")
-            computed = value * factor
-            half = computed * 2 / math.sqrt(2 * (SURFACES - 1)) if sampled else 0.0
-            yield Number(part, quantity, label, unit, printed, computed, half, rounding, sampled)
+            computed, (ours, papers) = value * factor, _sampling(quantity)
+            half, sampling = 2 * ours * computed, 2 * papers * computed
+            yield Number(part, quantity, label, unit, printed, computed, half, rounding, sampling)
+
+
+def _sampling(quantity: str) -> tuple[float, float]:
+    """Relative standard deviations of our number and of the paper's over random surfaces."""
+    if quantity.startswith("scatter"):
+        return (1 / math.sqrt(2 * (SURFACES - 1)),) * 2
+    one = ONE_SURFACE.get(quantity, 0.0)
+    return one / math.sqrt(FEWEST), one
 
 
 def _table3(data: Mapping[str, Any], quantity: str, factor: float, unit: str) -> list[Number]:
@@ -123,7 +136,7 @@ def _table3(data: Mapping[str, Any], quantity: str, factor: float, unit: str) ->
             factor * ours,
             factor * half,
             _half_digit(factor * printed),
-            sampled=sigma > 0,
+            sampling=factor * half,  # as many surfaces
         )
         for sigma, mesh, printed, ours, half in rows
     ]
@@ -168,7 +181,7 @@ def ratio_and_scatter(group: Sequence[Number]) -> tuple[float, float | None]:
 
 
 def as_cases(found: Iterable[Number]) -> dict[str, dict[str, Any]]:
-    """"numbers/QUANTITY" of findings, in the shape of cases: how many numbers, and how many beyond u."""
+    """ "numbers/QUANTITY" of findings, in the shape of cases: how many numbers, and how many beyond u."""
     return {
         f"numbers/{quantity}": {
             "data": {

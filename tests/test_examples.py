@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -10,7 +11,9 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+from reports import result_files
 from tests.documents import ROOT, agree
+from verification.cases.appendix_a import half_space
 
 EXAMPLES = {
     "hertz": (["32"], "converged: peak 165.79 MPa, -2.9e-03 of Hertz' 166.27"),
@@ -78,3 +81,17 @@ def test_an_example(name: str, tmp_path: Path) -> None:
     assert agree(done.stdout, stated), done.stdout
     with Image.open(picture) as made:
         assert min(made.size) > 150
+
+
+@pytest.mark.nightly
+def test_the_wave_is_drawn_from_a_fresh_record_of_its_case(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """All that the example reads is in the record of the case, here of two of its slopes."""
+    monkeypatch.setattr(half_space, "WAVE_SLOPES", (6.5, 15.0))
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    record = {"id": "model-form/half-space-wave", "data": half_space.wave().data}
+    monkeypatch.setattr(result_files, "committed", lambda _: {"cases": [record]})
+    monkeypatch.setattr(sys, "argv", ["", "fresh", str(tmp_path / "picture.png")])
+    runpy.run_path(str(ROOT / "examples/half_space_wave.py"))
+    assert agree(capsys.readouterr().out, EXAMPLES["half_space_wave"][1])

@@ -130,6 +130,12 @@ def test_no_file_imports_itself_through_others(package: str) -> None:
     assert circles == []
 
 
+def test_the_command_line_is_imported_by_the_cases_that_check_it_alone() -> None:
+    users = {name for name in modules("verification") if room(name) != "cli"}
+    users = {name for name in users if any(room(other) == "cli" for other in uses(name, "verification"))}
+    assert users <= {"verification.start", "verification.cases.error_bars.planning"}
+
+
 def test_solvers_see_a_problem_alone() -> None:
     others = {"scene", "planning", "solution", "surfaces", "driver"}
     solvers = [name for name in REFIMPL if room(name) == "solvers"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 import pickle
 import tomllib
 from dataclasses import asdict, fields, replace
@@ -262,6 +263,18 @@ def test_a_solution_computes_what_is_read_and_stores_all() -> None:
     stored = vars(pickle.loads(pickle.dumps(solution)))
     assert repr(stored["uncertainty"]) == repr(solution.uncertainty)
     assert stored["warnings"] == solution.warnings
+
+
+def test_flat_slopes_are_flat_in_a_pickle() -> None:
+    """Bounds of pressures at the hardness exist for flat slopes alone; computed anew, they are the same."""
+    softer = rf.Body(rf.Material(118e9, 0.3, hardness=120e6), rf.Flat())
+    scene = replace(rf.read_scene("hertz"), lower=softer)
+    solution = rf.solve(scene, 32)
+    again = pickle.loads(pickle.dumps(solution))
+    assert again.slopes.is_flat
+    assert solution.plastic_area > 0
+    assert math.isfinite(solution.bounds.energy)
+    assert repr(again.bounds) == repr(solution.bounds)
 
 
 def test_a_changed_solution_keeps_the_rest() -> None:

@@ -84,7 +84,10 @@ class Options:
         if plastic is False or hardness is None or self.approach is not None:
             return
         most = hardness * scene.lengths[0] * scene.lengths[1]
-        allowed = f"at most {most:.6g} N, the hardness times the nominal area (or plastic = false)"
+        allowed = (
+            f"at most {most:.6g} N, the softer body's hardness, {hardness:.4g} Pa, times the nominal area "
+            "(1 HV is 9.81e6 Pa; or plastic = false)"
+        )
         require_number("load", scene.load, allowed, at_most=most)
 
     def _check_strains(self) -> None:

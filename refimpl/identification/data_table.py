@@ -16,6 +16,7 @@ from refimpl.scene.scene import Body, Scene
 
 MAX_ROWS, MAX_BYTES = 1000, 1_000_000
 MIXED_FRICTION = 50.0  # ratio of two rows' mu from which one of them is taken to be in kN
+MOST_FRICTION = 50.0  # mu of every row: rubber under its own weight has 10
 MIXED_LOADS = 300.0  # ratio of neighbouring loads, the same: no loading series leaves such a gap
 _FRICTION = {"mu": "u_mu", "friction_force": "u_friction_force"}
 _FRAME, _FILES = ("sliding_direction", "sliding_offset"), ("upper_file", "lower_file")
@@ -70,8 +71,9 @@ def read_rows(path: str | Path) -> tuple[Row, ...]:
     ``load,friction_force,u_friction_force``.
 
     SI units; ``u`` is a standard uncertainty (68 %). Optional columns: ``sliding_direction`` (rad),
-    ``sliding_offset`` (m), ``upper_file`` and ``lower_file`` (relative to the table). Lines that begin with
-    "#" are comments. Raises `InputError`, which names the line, for anything else.
+    ``sliding_offset`` (m), ``upper_file`` and ``lower_file`` (relative to the table). Semicolons or tabs may
+    separate the columns; decimal commas are read then. Lines that begin with "#" are comments. Raises
+    `InputError`, which names the line, for anything else.
     """
     path = Path(path)
     require_regular("data", path, MAX_BYTES)
@@ -88,15 +90,18 @@ def read_rows(path: str | Path) -> tuple[Row, ...]:
     ]
     if len(lines) > MAX_ROWS + 1:
         raise InputError("data", f"{len(lines) - 1} rows", f"at most {MAX_ROWS}")
+    separator = next((mark for mark in ";\t" if lines and mark in lines[0][1]), ",")
     try:
-        cells = [(k, [cell.strip() for cell in next(csv.reader([line], strict=True))]) for k, line in lines]
+        read = ((k, next(csv.reader([line], delimiter=separator, strict=True))) for k, line in lines)
+        cells = [(k, [cell.strip() for cell in row]) for k, row in read]
     except csv.Error as alien:
         raise InputError("data", str(path), f"a CSV file ({alien})") from alien
     if not cells:
         raise InputError("data", str(path), "a header line and rows: the file is empty")
     header = cells[0][1]
     quantity = _check_header(header)
-    rows = tuple(_row(header, quantity, k, line, path.parent) for k, line in cells[1:])
+    decimal = "." if separator == "," else ","
+    rows = tuple(_row(header, quantity, k, line, path.parent, decimal) for k, line in cells[1:])
     return check_rows(rows)
 
 
@@ -118,12 +123,14 @@ def _check_header(header: Sequence[str]) -> str:
     return given[0]
 
 
-def _row(header: Sequence[str], quantity: str, k: int, cells: Sequence[str], folder: Path) -> Row:
+def _row(
+    header: Sequence[str], quantity: str, k: int, cells: Sequence[str], folder: Path, decimal: str
+) -> Row:
     if len(cells) != len(header):
         raise InputError(f"data line {k}", ",".join(cells), f"{len(header)} cells, as many as columns")
     found = dict(zip(header, cells, strict=True))
     numbers = {
-        name: _number(k, name, text)
+        name: _number(k, name, text.replace(decimal, "."))
         for name, text in found.items()
         if name not in _FILES and (text or name not in _FRAME)
     }
@@ -153,7 +160,7 @@ def check_rows(rows: Sequence[Row], unknowns: int = 2) -> tuple[Row, ...]:
     """Return the rows; raises `InputError` where the parameters cannot be found from them.
 
     As many loads, or scenes, as unknowns are required. Rows whose mu or whose loads lie so far apart that N
-    and kN are mixed are refused.
+    and kN are mixed are refused, and so are all beyond any friction, or all less than their uncertainty.
     """
     cases = {replace(row, mu=0.0, u_mu=0.0) for row in rows}
     if len(cases) < unknowns:
@@ -167,4 +174,11 @@ def check_rows(rows: Sequence[Row], unknowns: int = 2) -> tuple[Row, ...]:
     mus = sorted(row.mu for row in rows if row.mu > 0)
     if mus and mus[-1] > MIXED_FRICTION * mus[0]:
         raise InputError("data: mu", f"{mus[0]:.3g} to {mus[-1]:.3g}", "forces in N alone (N and kN mixed?)")
+    if mus and mus[0] > MOST_FRICTION:
+        raise InputError(
+            "data: mu", f"{mus[0]:.3g} to {mus[-1]:.3g}", "friction and load in N (mN, kN mixed?)"
+        )
+    if all(row.u_mu > row.mu for row in rows):
+        least = min(row.u_mu for row in rows)
+        raise InputError("data: u_mu", f"{least:.3g} or more", "uncertainties below mu itself (in per cent?)")
     return tuple(rows)

@@ -129,7 +129,7 @@ def _response(
         share = 100 * float(solution.contact.mean())
         raise ArithmeticError(
             f"the solve at {scene.load:.4g} N ended as {solution.status.value} with {share:.3g} % of the "
-            "domain in contact: check the unit of the loads"
+            "domain in contact: check the units of load and friction"
         )
     inputs, solves = _inputs(scene, solution, tolerances)
     by_tau, by_beta = friction_slopes(scene, solution)

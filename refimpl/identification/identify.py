@@ -27,6 +27,10 @@ from refimpl.scene.parameters import check_tolerances, parameters
 from refimpl.scene.scene import Scene
 
 _LARGEST = math.log(1e300)
+_ONE_DRAW = (
+    "the surface is one random draw, taken as the specimen itself: another may fit as well with another tau; "
+    "take a measured map, or realisations"
+)
 
 
 def identify(
@@ -80,7 +84,8 @@ def identify(
     if design and result.values["tau"].relative > WIDE:
         result = replace(result, proposal=_proposal(scene, forward, result, parts, realisations))
     result = replace(result, solves=forward.solves)
-    return replace(result, warnings=notes(result))
+    drawn = (_ONE_DRAW,) if is_random(scene) and realisations == 1 else ()
+    return replace(result, warnings=(*notes(result), *drawn))
 
 
 def _result(

@@ -17,6 +17,7 @@ from refimpl.grid import Array
 from refimpl.surfaces.statistics import kurtosis, rms_height, skewness
 
 Pixel = tuple[float, float]
+SLOPES = 1e-5, 10.0  # rms slopes of machined, polished and worn surfaces lie between; um for m is 1e6
 DIRECTIONS = 180  # directions of the half-circle in which the autocorrelation is followed
 
 
@@ -34,11 +35,29 @@ def mean_square_slopes(z: Array, pixel: Pixel) -> Pixel:
     return x, y
 
 
+def implausible_slope(z: Array, pixel: Pixel) -> tuple[str, ...]:
+    """A note on an rms slope that a wrong unit of heights or pixel would make, of a map that is not flat."""
+    slope = math.sqrt(sum(mean_square_slopes(z, pixel)))
+    if slope == 0 or not math.isfinite(slope) or SLOPES[0] <= slope <= SLOPES[1]:
+        return ()
+    shown = "{:.4g} x {:.4g} m".format(*pixel)
+    return (
+        f"rms slope {slope:.2g}, beyond {SLOPES[0]:g} to {SLOPES[1]:g}: is the pixel {shown}, is unit right?",
+    )
+
+
 def nayak(z: Array, pixel: Pixel) -> float:
     """Nayak's ``m0 m4 / m2^2`` of profiles along x and y, averaged; second differences for m4."""
     m2 = sum(mean_square_slopes(z, pixel)) / 2.0
     m4 = sum(_mean_square(np.diff(z, 2, axis=k) / pixel[k] ** 2) for k in (0, 1)) / 2.0
     return float(np.nanvar(z)) * m4 / m2**2 if m2 > 0 else math.nan
+
+
+def _power(transform: NDArray[np.complex128]) -> Array:
+    """Squares of the magnitudes; ``abs`` would take roots and another array."""
+    power = transform.real**2
+    power += transform.imag**2
+    return power
 
 
 def _mean_square(values: Array) -> float:
@@ -65,11 +84,13 @@ class Autocorrelation:
         d = np.where(known, z - np.nanmean(z), 0.0)
         reach = tuple(n // 2 for n in z.shape)
         shape = tuple(scipy.fft.next_fast_len(n + m, real=True) for n, m in zip(z.shape, reach, strict=True))
-        products = scipy.fft.irfft2(np.abs(scipy.fft.rfft2(d, s=shape)) ** 2, s=shape)
-        pairs = scipy.fft.irfft2(np.abs(scipy.fft.rfft2(known.astype(float), s=shape)) ** 2, s=shape)
-        order = tuple(np.arange(-m, m + 1) for m in reach)
+        order = np.ix_(*(np.arange(-m, m + 1) for m in reach))
+        products, pairs = (
+            scipy.fft.irfft2(_power(scipy.fft.rfft2(values, s=shape)), s=shape)[order]
+            for values in (d, known)
+        )
         with np.errstate(invalid="ignore", divide="ignore"):
-            mean = np.where(pairs > 0.5, products / pairs, np.nan)[np.ix_(*order)]
+            mean = np.where(pairs > 0.5, products / pairs, np.nan)
         variance = mean[reach]
         return cls(mean / variance if variance > 0 else mean * np.nan, pixel)
 
@@ -145,16 +166,16 @@ class Spectrum:
     def of(cls, z: Array, pixel: Pixel, anisotropy: float = 1.0, lay: float = 0.0) -> Spectrum:
         """Hann's window on both axes; missing points count as the mean height."""
         windows = [np.sin(np.pi * (np.arange(n) + 0.5) / n) ** 2 for n in z.shape]
-        window = np.outer(*windows)
         known = np.isfinite(z)
-        weighted = np.where(known, z - np.nanmean(z), 0.0) * window
-        power = np.abs(scipy.fft.fft2(weighted)) ** 2 * (
-            pixel[0] * pixel[1] / float(np.sum(window[known] ** 2))
-        )
+        weighted = np.where(known, z - np.nanmean(z), 0.0)
+        weighted *= windows[0][:, None]
+        weighted *= windows[1]
+        power = _power(scipy.fft.fft2(weighted))
+        power *= pixel[0] * pixel[1] / float(windows[0] ** 2 @ known @ windows[1] ** 2)
         qx, qy = (2 * np.pi * scipy.fft.fftfreq(n, edge) for n, edge in zip(z.shape, pixel, strict=True))
         cos, sin = math.cos(lay), math.sin(lay)
         along = anisotropy * (cos * qx[:, None] + sin * qy[None, :])
-        norm = np.hypot(along, cos * qy[None, :] - sin * qx[:, None])
+        norm = np.hypot(along, cos * qy[None, :] - sin * qx[:, None], out=along)
         step = 2 * np.pi * max(1.0 / (n * edge) for n, edge in zip(z.shape, pixel, strict=True))
         last = math.pi / max(pixel)  # beyond, rings are cut by the square of the transform
         ring = np.minimum(np.rint(norm / step), last / step + 1).astype(np.intp)

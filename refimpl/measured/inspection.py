@@ -16,6 +16,7 @@ from refimpl.measured.areal_parameters import (
     Autocorrelation,
     Spectrum,
     height_parameters,
+    implausible_slope,
     mean_square_slopes,
     nayak,
 )
@@ -112,7 +113,7 @@ class Inspection:
             "radius": self.radius,
             "window": {"points": list(self.z.shape), "missing": int(np.isnan(self.z).sum())},
             "parameters": self.parameters,
-            "notes": list(self.surface.prepared.notes),
+            "notes": [*self.surface.prepared.notes, *implausible_slope(self.z, self.pixel)],
         }
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from refimpl.errors import InputError, require_one_of, size_text
 from refimpl.grid import Array, Grid
+from refimpl.measured.areal_parameters import implausible_slope
 from refimpl.measured.crop import ROUNDING, Crop, extent
 from refimpl.measured.detrending import Form, check_level, fit_form
 from refimpl.measured.missing_points import fill
@@ -195,27 +196,28 @@ class MeasuredSurface(Surface):
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
         name, reading = self._file.name, self._oriented.reading
-        z, form, rest = self._central(grid.lengths)
-        tilt = size_text(slope / pixel for slope, pixel in zip(form.slopes, reading.pixel, strict=True))
-        bent = "" if form.radius is None else f", radius {form.radius:.4g} m"
+        window = self._crop(grid.lengths)
         return (
             f"{name}: {size_text(reading.heights.shape)} points on {size_text(reading.area)} m, "
             f"read {reading.source}",
             f"{name}: the window of {size_text(grid.lengths)} m about {self._about} is used, "
-            f"{size_text(z.shape)} points, resampled bicubically to {grid} elements",
-            f"{name}: level {self.level!r} fitted in that window (slopes {tilt}{bent}) and subtracted; "
-            f"rms height there {np.nanstd(z):.4g} m before, {np.nanstd(rest):.4g} m after",
-            *(f"{name}: {note}" for note in self.file_notes),
+            f"{size_text(part.stop - part.start for part in window.points)} points, resampled bicubically to "
+            f"{grid} elements",
+            *(f"{name}: {note}" for note in self._origin),
             *self.notes(grid),
         )
 
     @property
     def file_notes(self) -> tuple[str, ...]:
         """Channel, orientation and what was changed in reading and preparing the file."""
-        reading = self.prepared
+        return (*self._origin, *self.prepared.notes)
+
+    @property
+    def _origin(self) -> tuple[str, ...]:
+        reading = self.reading
         others = [name for name in reading.channels if name != reading.channel]
         several = (f"channel {reading.channel!r} was read; there are also {', '.join(map(repr, others))}",)
-        return (reading.orientation, *(several if others else ()), *reading.notes)
+        return (reading.orientation, *(several if others else ()))
 
     @property
     def _about(self) -> str:
@@ -225,13 +227,23 @@ class MeasuredSurface(Surface):
         return min(self.reading.pixel)
 
     def notes(self, grid: Grid) -> tuple[str, ...]:
+        """What reading and preparing changed, the form subtracted, what is filled, what is doubtful."""
         name, window = self._file.name, self._crop(grid.lengths)
-        said = []
+        z, form, rest = self._central(grid.lengths)
+        pixel = self._oriented.reading.pixel
+        said = [f"{name}: {note}" for note in self.prepared.notes]
+        if self.level != "none":
+            tilt = size_text(slope / edge for slope, edge in zip(form.slopes, pixel, strict=True))
+            bent = "" if form.radius is None else f", radius {form.radius:.4g} m"
+            said.append(
+                f"{name}: level {self.level!r} fitted in the window (slopes {tilt}{bent}) and subtracted; "
+                f"rms height there {np.nanstd(z):.4g} m before, {np.nanstd(rest):.4g} m after"
+            )
+        said += [f"{name}: {note}" for note in implausible_slope(rest, pixel)]
         if window.lost:
             said.append(
                 f"{name}: {window.lost} of {window.size} points in the window are missing, filled in here"
             )
-        pixel = self._oriented.reading.pixel
         if min(e / p for e, p in zip(grid.spacings, pixel, strict=True)) < 1.0 - ROUNDING:
             said.append(
                 f"{name}: the element, {min(grid.spacings):.4g} m, is finer than the measured pixel, "

@@ -104,15 +104,23 @@ def _filtered(
     for name, wavelength in (("low_pass", low_pass), ("high_pass", high_pass)):
         if wavelength is None:
             continue
-        if wavelength < 2 * max(reading.pixel):
-            raise InputError(
-                name, wavelength, f"at least two pixels of {reading.name}, each {reading.pixel} m"
-            )
+        longest = max(reading.area)
+        if not 2 * max(reading.pixel) <= wavelength <= longest:
+            own = f"{max(reading.pixel):.4g} m, and at most its longer side, {longest:.4g} m"
+            raise InputError(name, wavelength, f"at least two pixels of {reading.name}, each {own}")
         smooth = gaussian_filter(z, reading.pixel, wavelength, repeats)
         z = smooth if name == "low_pass" else z - smooth
+        border = (
+            ""
+            if repeats
+            else (
+                f"; within half of it, {wavelength / 2:.4g} m, of the border heights are biased: "
+                "a smaller size leaves that zone out"
+            )
+        )
         notes.append(
             f"wavelengths {'below' if name == 'low_pass' else 'above'} {wavelength:.4g} m were damped "
-            "(Gaussian filter of ISO 16610, by half at that wavelength)"
+            f"(Gaussian filter of ISO 16610, by half at that wavelength){border}"
         )
     z = z if high_pass is not None else z + plane
     return replace(reading, heights=np.where(np.isnan(reading.heights), np.nan, z), notes=tuple(notes))

@@ -26,8 +26,9 @@ from refimpl.measured.instrument_files import (
     read_instrument,
     read_or_refuse,
 )
+from refimpl.measured.point_tables import is_triples, on_grid
 from refimpl.measured.reading import IMAGE, MAX_BYTES, MAX_POINTS, UNITS, Overrides, RawHeights, checked
-from refimpl.measured.text_tables import TextTable, decoded, is_triples, on_grid, read_table
+from refimpl.measured.text_tables import TextTable, read_table
 
 __all__ = ["MAX_BYTES", "MAX_POINTS", "UNITS", "Overrides", "RawHeights", "read"]
 
@@ -88,8 +89,12 @@ def _npy(path: Path) -> Array:
     return np.lib.format.open_memmap(path, mode="r")
 
 
-def _plain(path: Path, raw: Array, given: Overrides, source: str, notes: tuple[str, ...] = ()) -> RawHeights:
-    unit, pixel, _ = given.resolve(path.name, None, None)
+def _plain(
+    path: Path, raw: Array, given: Overrides, source: str, table: TextTable | None = None
+) -> RawHeights:
+    header, notes = (table.header, table.notes) if table else ((), ())
+    seen = f" in words known here (header: {'; '.join(header)[:200]})" if header else ""
+    unit, pixel, _ = given.resolve(path.name, None, None, f"does not state them{seen}")
     return RawHeights(raw * UNITS[unit], pixel, path.name, source, unit, notes=notes)
 
 
@@ -102,38 +107,39 @@ def _text(path: Path, given: Overrides) -> RawHeights:
         raise InputError(
             "path", str(path), f"a map (a line scan: {rows} rows of {columns} columns were found)"
         )
-    if is_triples(table):
-        _refuse_interruption(path, table)
+    if is_triples(table.rows):
         return _points(path, table, given)
     if not table.header:
-        _refuse_interruption(path, table)
-        return _plain(path, checked(path, table.rows), given, "as a plain table of text", table.notes)
+        return _plain(path, checked(path, table.rows), given, "as a plain table of text", table)
     try:
         return _with_header(path, table, given)
     except InputError as refused:
         if refused.field == "channel":
             raise
-    _refuse_interruption(path, table)
+    if len(table.blocks) > 1:
+        raise InputError(
+            "path", str(path), f"one image, or images with names (blocks of {table.blocks} lines)"
+        )
     image = checked(path, table.rows).T[:, ::-1]
-    reading = _plain(path, np.ascontiguousarray(image), given, "as text with a header", table.notes)
+    reading = _plain(path, np.ascontiguousarray(image), given, "as text with a header", table)
     return replace(reading, orientation=IMAGE)
-
-
-def _refuse_interruption(path: Path, table: TextTable) -> None:
-    if table.interrupted:
-        found = f"after row {len(table.rows)} stands {table.interrupted[:60]!r}, then numbers"
-        raise InputError("path", str(path), f"numbers in one block ({found})")
 
 
 def _with_header(path: Path, table: TextTable, given: Overrides) -> RawHeights:
     """Text whose header says what the library knows: Gwyddion's, SPIP's, Wyko's and others."""
     library = library_for(path)
-    text = table.normalised() if table.notes or "," in table.header[-1] else decoded(path).encode()
+    text = table.normalised()
 
     def load(file: Path) -> RawHeights:
         return read_as(library, file, "asc", given, io.BytesIO(text), table.notes)
 
-    return read_or_refuse(path, load, corrupt(library))
+    found = read_or_refuse(path, load, corrupt(library))
+    if not set(found.heights.shape) & set(table.blocks):
+        allowed = (
+            f"an image of {' or '.join(map(str, table.blocks))} lines, not {size_text(found.heights.shape)}"
+        )
+        raise InputError("path", str(path), allowed)
+    return found
 
 
 def _check_pitch(path: Path, pitch: tuple[float, float], given: Overrides) -> None:
@@ -154,12 +160,12 @@ def _points(path: Path, table: TextTable, given: Overrides) -> RawHeights:
     if given.unit is None:
         allowed = f"one: {path.name} holds points x, y, z and states no unit"
         raise InputError("unit", None, allowed)
-    heights, pitch = on_grid(path, table.rows * UNITS[given.unit])
+    heights, edges = on_grid(path, table.rows)
+    pitch = edges[0] * UNITS[given.unit], edges[1] * UNITS[given.unit]
     _check_pitch(path, pitch, given)
     unit, pixel, notes = given.resolve(path.name, given.unit, pitch)
     if heights.size > MAX_POINTS:
         raise InputError("path", str(path), f"heights on a grid of at most {MAX_POINTS} points")
+    heights, notes = checked(path, heights * UNITS[given.unit]), (*table.notes, *notes)
     source, orientation = "as points x, y, z", "coordinates as the file states them"
-    return RawHeights(
-        checked(path, heights), pixel, path.name, source, unit, orientation, notes=(*table.notes, *notes)
-    )
+    return RawHeights(heights, pixel, path.name, source, unit, orientation, notes=notes)

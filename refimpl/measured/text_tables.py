@@ -1,202 +1,239 @@
-"""Text files of heights: separators, decimal commas, headers, index columns, maps and x-y-z triples."""
+"""Text files of heights: separators, decimal commas, headers, missing points.
+
+One rule for a table: once it has begun, every line that is neither blank nor a comment (``#``) is one of its
+rows, of as many entries as the first. An entry is a number, a mark of NOT_MEASURED or, between separators
+other than blanks and at the end of such a line, nothing; all else is refused with its line.
+"""
 
 from __future__ import annotations
 
 import io
 import re
+from array import array
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import islice
+from itertools import islice, pairwise
 from pathlib import Path
 
 import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
+from refimpl.measured.table_labels import is_title, without_labels
 
 MAX_HEADER = 400  # lines before the numbers
-NOT_MEASURED = ("nan", "bad", "na", "n/a", "inf", "-inf", "null", "none", "---", "***", "*", "-")
+_SAMPLE = 50  # lines by whose entries labels of rows and columns are known
+_PIECE = 2**20  # characters read at a time
+NOT_MEASURED = (
+    "nan", "bad", "na", "n/a", "inf", "-inf", "null", "none", "---", "--", "***", "**", "*", "-",
+)  # fmt: skip
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?")
-_COMMA_NUMBER = re.compile(r"[-+]?\d+,\d+([eE][-+]?\d+)?")
-_WHOLE = re.compile(r"\d+")
+_COMMA_NUMBER = re.compile(r"[-+]?(\d+,\d*|,\d+)([eEdD][-+]?\d+)?")
 
 
 @dataclass(frozen=True)
 class TextTable:
     """Numbers of a text file as they stand, missing entries NaN; the lines before them; what was changed.
 
-    ``interrupted``: a line of text that is followed by more numbers; empty where there is none.
+    ``comments``: lines that begin with ``#`` after the first row, each with the number of rows before it.
     """
 
     rows: Array
     header: tuple[str, ...]
     notes: tuple[str, ...]
-    interrupted: str = ""
+    comments: tuple[tuple[int, str], ...] = ()
 
     def normalised(self) -> bytes:
-        """Header and numbers in UTF-8, with blanks between and decimal points."""
-        text = io.StringIO()
-        text.write("".join(f"{line}\n" for line in self.header))
-        np.savetxt(text, self.rows, fmt="%.17g")
-        return text.getvalue().encode()
+        """Header, numbers and comments in UTF-8, with blanks between and decimal points."""
+        text, begun = io.BytesIO(), 0
+        text.write("".join(f"{line}\n" for line in self.header).encode())
+        for row, comment in (*self.comments, (len(self.rows), "")):
+            np.savetxt(text, self.rows[begun:row], fmt="%s")
+            text.write(f"{comment}\n".encode())
+            begun = row
+        return text.getvalue()
+
+    @property
+    def blocks(self) -> tuple[int, ...]:
+        """Numbers of rows between comments that repeat a line of the header: images of one file."""
+        again = {row for row, comment in self.comments if comment in self.header}
+        return tuple(b - a for a, b in pairwise(sorted({0, *again, len(self.rows)})))
 
 
-def decoded(path: Path) -> str:
-    """The text of a file: UTF-8 or UTF-16 by its mark, UTF-8 if it is valid, else Latin-1."""
-    raw = path.read_bytes()
-    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return raw.decode("utf-16")
+def encoding_of(path: Path) -> str:
+    """UTF-8 or UTF-16 by the file's mark, UTF-8 if it is valid, else Latin-1."""
+    with path.open("rb") as file:
+        if file.read(2) in (b"\xff\xfe", b"\xfe\xff"):
+            return "utf-16"
     try:
-        return raw.decode("utf-8-sig")
+        with path.open(encoding="utf-8-sig") as text:
+            while text.read(_PIECE):
+                pass
     except UnicodeDecodeError:
-        return raw.decode("latin-1")
+        return "latin-1"
+    return "utf-8-sig"
+
+
+def _lines(path: Path, encoding: str) -> Iterator[tuple[int, str]]:
+    """Number and text of each line, one at a time: a list takes several times what their numbers do."""
+    with path.open(encoding=encoding) as file:
+        for number, line in enumerate(file, 1):
+            yield from ((number, part.strip(" \xa0")) for part in line.splitlines())
 
 
 def read_table(path: Path) -> TextTable:
     """Read the table of numbers in a text file. Raises InputError that says what was found."""
-    lines = [line.strip() for line in decoded(path).splitlines()]
-    start, layout = _layout(path, lines)
+    encoding = encoding_of(path)
+    head = list(islice(_lines(path, encoding), MAX_HEADER + _SAMPLE))
+    lines = [line for _, line in head]
+    layout, start, width = _layout(path, lines)
+    sample = [layout.cells(line) for line in lines[start : start + _SAMPLE] if line and line[0] != "#"]
+    titled = is_title(sample)
+    comments: list[tuple[int, str]] = []
+
+    def data() -> Iterator[tuple[int, str]]:
+        comments.clear()
+        count = 0
+        for number, line in islice(_lines(path, encoding), start + titled, None):
+            if line.startswith("#") and not layout.is_row(line, width):
+                comments.append((count, line))
+            elif line.strip() or len(layout.cells(line)) == width:  # tabs alone: missing points
+                count += 1
+                yield number, line
+
+    notes: list[str] = []
+    rows = _plain_numbers(layout, (line for _, line in data()))
+    if rows is None:
+        rows, notes = _numbers(path, layout, data(), width)
+    elif layout.ends(lines[start]):
+        notes = [_EMPTY.format("last")]
+    rows[np.isinf(rows)] = np.nan
     header = tuple(line for line in lines[:start] if line.strip(",; \t"))
-    data = [line for line in lines[start:] if line]
-    rows, used = _numbers(path, layout, data, len(layout.cells(lines[start])))
-    interrupted = data[used] if any(layout.is_data(line) for line in data[used + 1 :]) else ""
-    notes = [f"separator {layout.name}, decimal comma"] if layout.comma else []
-    if rows.shape[1] > 1 and _is_index(rows[:, 0], layout, lines[start : start + 50]):
-        rows, notes = rows[:, 1:], [*notes, "a leading index column was dropped"]
-    return TextTable(rows, header, tuple(notes), interrupted)
+    rows, labels = without_labels(path, rows, sample)
+    return TextTable(rows, header, (*notes, *labels), tuple(comments))
+
+
+_EMPTY = "the {} column, empty in all lines, was dropped"
 
 
 @dataclass(frozen=True)
 class _Layout:
     separator: str | None  # None: blanks
-    comma: bool  # decimal
 
     @property
     def name(self) -> str:
         return {None: "blank", "\t": "tab"}.get(self.separator, f"'{self.separator}'")
 
     def cells(self, line: str) -> list[str]:
-        """The entries of a line; a separator at the end of the line separates nothing."""
-        line = line.split("#")[0].rstrip() if not line.startswith("#") else line
-        if self.separator is None:
-            return line.split()
-        return [cell.strip() for cell in line.rstrip(self.separator).split(self.separator)]
+        """The entries of a line, without a comment at its end."""
+        line = line.split("#")[0] if not line.startswith("#") else line
+        return [cell.strip() for cell in line.split(self.separator)]
+
+    def ends(self, line: str) -> bool:
+        """Whether the separator ends the line."""
+        return self.separator is not None and line.endswith(self.separator)
+
+    def is_number(self, cell: str) -> bool:
+        return bool(_NUMBER.fullmatch(cell) or (self.separator != "," and _COMMA_NUMBER.fullmatch(cell)))
+
+    def unknown(self, cells: Iterable[str]) -> list[str]:
+        """Entries that are neither numbers nor missing."""
+        return [c for c in cells if c and c.lower() not in NOT_MEASURED and not self.is_number(c)]
 
     def is_data(self, line: str) -> bool:
         cells = self.cells(line)
-        known = [cell for cell in cells if cell and cell.lower() not in NOT_MEASURED]
-        return bool(known) and bool(cells[0]) and all(self.is_number(cell) for cell in known)
+        return any(map(self.is_number, cells)) and not self.unknown(cells)
 
-    def is_number(self, cell: str) -> bool:
-        return bool(_NUMBER.fullmatch(cell) or (self.comma and _COMMA_NUMBER.fullmatch(cell)))
+    def is_row(self, line: str, width: int) -> bool:
+        """Whether a line is a row of that width, an alien mark in it or not: texts of a header differ."""
+        cells = self.cells(line)
+        unknown = self.unknown(cells)
+        known = len(unknown) + sum(map(self.is_number, cells))
+        return len(cells) == width and (not unknown or 2 * len(set(unknown)) < known)
 
     def value(self, cell: str) -> float:
-        if not cell or cell.lower() in NOT_MEASURED:
-            return np.nan
-        return float((cell.replace(",", ".") if self.comma else cell).replace("d", "e").replace("D", "E"))
+        """NaN of what is missing. Raises ValueError."""
+        try:
+            return float(cell)
+        except ValueError:
+            if not cell or cell.lower() in NOT_MEASURED:
+                return np.nan
+            return float(cell.lower().replace("d", "e", 1))
 
 
-_LAYOUTS = (
-    _Layout(";", False), _Layout(";", True), _Layout("\t", False), _Layout("\t", True),
-    _Layout(",", False), _Layout(None, False), _Layout(None, True),
-)  # fmt: skip
+_LAYOUTS = tuple(map(_Layout, (";", "\t", ",", None)))
 
 
-def _layout(path: Path, lines: list[str]) -> tuple[int, _Layout]:
-    """Line on which the numbers begin, and how they are separated: the first two lines alike that are."""
+def _layout(path: Path, lines: list[str]) -> tuple[_Layout, int, int]:
+    """How numbers are separated, the table's first line and its width, by the first two lines of numbers.
+
+    Lines directly above them that look like rows are rows as well.
+    """
     for k, line in enumerate(islice(lines, MAX_HEADER)):
         following = next(filter(None, lines[k + 1 : k + 4]), "")
         for layout in _LAYOUTS:
             if layout.separator is not None and layout.separator not in line:
                 continue
             if layout.is_data(line) and (not following or layout.is_data(following)):
-                return k, layout
-    found = next(filter(None, lines), "")[:60]
+                width, start = len(layout.cells(line)), k
+                for above in range(k - 1, -1, -1):
+                    if layout.is_row(lines[above], width):
+                        start = above
+                    elif lines[above]:
+                        break
+                _refuse_blank(path, [layout.cells(line) for line in lines[:k]], start, width)
+                return layout, start, width
+    found = next(filter(str.strip, lines), "").strip()[:60]
     raise InputError(
         "path", str(path), f"rows of numbers (no two lines of numbers; it begins with {found!r})"
     )
 
 
-def _numbers(path: Path, layout: _Layout, lines: list[str], width: int) -> tuple[Array, int]:
-    """The numbers of lines up to a line of text, and how many lines that are.
+def _refuse_blank(path: Path, above: list[list[str]], start: int, width: int) -> None:
+    """Refuse a line of separators alone below a header that is padded by them, as spreadsheets do."""
+    padded = any(len(cells) == width and not cells[-1] for cells in above[:start])
+    if padded and any(not any(cells) for cells in above[start:]):
+        found = f"line {start + 1} has none: write nan in a row of missing points, delete a blank line"
+        raise InputError("path", str(path), f"entries between separators ({found})")
 
-    NumPy's reader first: it is 20 times faster on plain numbers.
-    """
-    if not layout.comma:
-        ended = lines if layout.separator is None else [line.rstrip(layout.separator) for line in lines]
-        try:
-            return np.loadtxt(ended, delimiter=layout.separator, ndmin=2), len(lines)
-        except ValueError:
-            pass
-    rows: list[Array] = []
-    for number, line in enumerate(lines):
+
+def _plain_numbers(layout: _Layout, lines: Iterator[str]) -> Array | None:
+    """The numbers by NumPy's reader, 20 times faster; None for what it cannot read."""
+    separator = layout.separator
+    try:
+        ended = lines if separator is None else (line.removesuffix(separator) for line in lines)
+        return np.loadtxt(ended, delimiter=separator, ndmin=2)
+    except ValueError:
+        return None
+
+
+def _numbers(
+    path: Path, layout: _Layout, lines: Iterator[tuple[int, str]], width: int
+) -> tuple[Array, list[str]]:
+    """The numbers of all lines, each of ``width`` entries, and notes. Raises InputError with the line."""
+    values, decimals, filled = array("d"), set[str](), [False, False]
+    for number, line in lines:
+        if layout.separator != ",":
+            decimals |= {mark for mark in ".," if mark in line}
+            line = line.replace(",", ".")
         cells = layout.cells(line)
+        if layout.separator is not None:
+            cells += [""] * (width - len(cells))
+        if len(cells) != width or len(decimals) > 1:
+            found = f"line {number} has {len(cells)}, the first row {width}"
+            if len(decimals) > 1:
+                found = f"decimal points and commas, line {number}: {line[:40]!r}"
+            raise InputError("path", str(path), f"rows of one length and kind ({found})")
         try:
-            row = [layout.value(cell) for cell in cells]
+            values.extend([layout.value(cell) for cell in cells])
         except ValueError:
-            if line.startswith("#"):
-                continue
-            return np.array(rows), number
-        if len(row) < width and layout.separator not in (None, ","):
-            row += [np.nan] * (width - len(row))  # empty entries at the end of the line
-        if len(row) != width:
-            allowed = f"rows of one length (row {number + 1} of numbers has {len(row)}, the first {width})"
-            raise InputError("path", str(path), allowed)
-        rows.append(np.array(row))  # 8 bytes a number instead of 32
-    return np.array(rows), len(lines)
-
-
-def _is_index(column: Array, layout: _Layout, lines: list[str]) -> bool:
-    """Whether the first column counts rows in whole numbers, beside columns that are not all whole."""
-    counts = len(column) > 1 and column[0] in (0, 1) and bool(np.all(np.diff(column) == 1))
-    cells = [layout.cells(line) for line in lines if line]
-    whole = all(_WHOLE.fullmatch(row[0]) for row in cells if row)
-    decimals = not all(_WHOLE.fullmatch(cell) for row in cells for cell in row[1:] if cell)
-    return bool(counts and whole and decimals)
-
-
-def is_triples(table: TextTable) -> bool:
-    """True if the rows are points x, y, z: a map has four columns at least."""
-    return bool(table.rows.shape[1] == 3)
-
-
-def on_grid(path: Path, points: Array) -> tuple[Array, tuple[float, float]]:
-    """Heights ``[i, j]`` of points ``(x, y, z)`` and the pitch of their grid; absent points are NaN.
-
-    The pitch is the median distance between neighbouring distinct coordinates. Raises InputError for a line
-    scan, for points more than a tenth of the pitch off the grid and for two points in one place.
-    """
-    x, y, z = points[np.isfinite(points[:, :2]).all(axis=1)].T
-    indices, pitches = [], []
-    for name, along in (("x", x), ("y", y)):
-        index, pitch = _positions(path, name, along)
-        indices.append(index)
-        pitches.append(pitch)
-    i, j = indices
-    shape = int(i.max()) + 1, int(j.max()) + 1
-    if shape[0] * shape[1] > 25 * len(z) + 1000:
-        what = f"points on a regular grid ({len(z)} points would fill {shape[0]} x {shape[1]} places)"
-        raise InputError("path", str(path), what)
-    heights = np.full(shape, np.nan)
-    heights[i, j] = z
-    twice = len(z) - len(np.unique(i * shape[1] + j))
-    if twice:
-        raise InputError("path", str(path), f"one height a point ({twice} points are given twice)")
-    return heights, (pitches[0], pitches[1])
-
-
-def _positions(path: Path, name: str, along: Array) -> tuple[Array, float]:
-    span = float(np.ptp(along)) if len(along) else 0.0
-    distinct = np.unique(along)
-    steps = np.diff(distinct)
-    steps = steps[steps > 1e-6 * span]  # rounding of one coordinate is not a step
-    if len(steps) == 0:
-        raise InputError("path", str(path), f"a map (a line scan: all points have one {name})")
-    pitch = float(np.median(steps))
-    pitch = span / round(span / pitch)
-    place = (along - along.min()) / pitch
-    off = float(np.abs(place - np.rint(place)).max())
-    if off > 0.1:
-        raise InputError(
-            "path", str(path), f"points on a regular grid ({off:.2g} of the pitch in {name} off it)"
-        )
-    return np.rint(place).astype(np.intp), pitch
+            alien = layout.unknown(cells)[0][:40]
+            allowed = f"numbers and {', '.join(NOT_MEASURED)} in the table (line {number}: {alien!r})"
+            raise InputError("path", str(path), allowed) from None
+        filled = [filled[0] or cells[0] != "", filled[1] or cells[-1] != ""]
+    notes = [f"separator {layout.name}, decimal comma"] if "," in decimals else []
+    rows = np.frombuffer(values).reshape(-1, width)
+    for k, side in ((1, "last"), (0, "first")):
+        if layout.separator is not None and not filled[k]:
+            rows, notes = rows[:, :-1] if k else rows[:, 1:], [*notes, _EMPTY.format(side)]
+    return rows, notes

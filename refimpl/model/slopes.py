@@ -6,6 +6,7 @@ import math
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -33,6 +34,10 @@ class Slopes:
     def is_flat(self) -> bool:
         """True if these are the zero slopes of `flat`."""
         return not any(self.tan_x.strides)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return the parts of a pickle: a broadcast zero would come back as an array, and no longer flat."""
+        return (Slopes.flat, (self.tan_x.shape,)) if self.is_flat else (Slopes, (self.tan_x, self.tan_y))
 
     @classmethod
     def of_surface(cls, heights: Array, grid: Grid, direction: float) -> Slopes:

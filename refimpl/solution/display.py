@@ -7,6 +7,7 @@ from html import escape
 
 import numpy as np
 
+from refimpl.accuracy.digits import bar_of, digits_of, verdict
 from refimpl.grid import Array
 from refimpl.solution.record import Record
 
@@ -22,7 +23,7 @@ SHOWN = (
     ("mean_gap", "mean gap", 1e6, "um"),
     ("approach", "approach", 1e6, "um"),
     ("normal_force", "normal force N", 1.0, "N"),
-    ("friction_force", "friction force F", 1.0, "N"),
+    ("friction_force_corrected", "friction force F", 1.0, "N"),
     ("binormal_force", "binormal force Q", 1.0, "N"),
 )
 _CELLS = 32  # cells along the longer side of the map
@@ -31,9 +32,8 @@ _INK = "#0072B2"  # Okabe and Ito 2008
 
 def line(solution: Record) -> str:
     """Return one line: status, grid, mu with its error, A."""
-    name = "friction_coefficient_corrected"
-    mu = with_error(getattr(solution, name), solution.error(name))
-    area = with_error(solution.contact_area * 1e6, solution.error("contact_area") * 1e6)
+    mu = " ".join(shown(solution, "friction_coefficient_corrected"))
+    area = " ".join(shown(solution, "contact_area", 1e6))
     return f"<Solution {solution.status.value}, {solution.grid}: mu = {mu}, A = {area} mm^2>"
 
 
@@ -61,32 +61,33 @@ def html(solution: Record) -> str:
     )
 
 
-def with_error(value: float, error: float) -> str:
-    """Return a number with the digits that its error leaves.
+def shown(solution: Record, name: str, factor: float = 1.0) -> list[str]:
+    """Return a number, its bar and "(not usable)", each where there is one; ``factor``: SI to the unit."""
+    error = solution.error(name) * factor
+    texts = digits_of(getattr(solution, name) * factor, error), bar_of(error), verdict_on(solution, name)
+    return [text for text in texts if text]
 
-    >>> with_error(0.112913, 0.00213), with_error(1234.4, 30.0), with_error(2.0, 0.0)
-    ('0.113 +- 0.002', '1230 +- 30', '2')
-    >>> with_error(0.112913, 0.2), with_error(0.1, math.inf)
-    ('0.11 +- 0.2 (not usable)', '0.1 (error unbounded)')
+
+def verdict_on(solution: Record, name: str) -> str:
+    """Return "(not usable)" for a bar above half of the number's magnitude, nothing otherwise.
+
+    Symmetry may make Q zero: its magnitude is that of the tangential force, F and Q together. Without
+    friction that of F and Q is N, and that of mu is 1.
     """
-    if not math.isfinite(value):
-        return "n/a"
-    if math.isinf(error):
-        return f"{value:.3g} (error unbounded)"
-    if error == 0 or error < 1e-6 * abs(value):
-        return f"{value:.6g}"
-    if error >= abs(value):
-        return f"{value:.2g} +- {error:.1g} (not usable)"
-    places = -math.floor(math.log10(float(f"{error:.0e}")))
-    shown, bar = round(value, places), round(error, places)
-    digits = max(places, 0)
-    return f"{shown:.{digits}f} +- {bar:.{digits}f}"
+    value = getattr(solution, name)
+    if not math.isfinite(value):  # without contact
+        return ""
+    scale = {"binormal_force": math.hypot(solution.friction_force, solution.binormal_force)}
+    if not solution.traction.any():  # frictionless
+        scale = dict.fromkeys(("friction_force_corrected", "binormal_force"), solution.normal_force)
+        scale |= dict.fromkeys(("friction_coefficient_corrected", "friction_coefficient"), 1.0)
+    return verdict(solution.error(name), scale.get(name, value))
 
 
 def _rows(solution: Record) -> list[tuple[str, str, str]]:
     left = set() if solution.plastic_area else {"plastic_area"}
     return [
-        (name, with_error(getattr(solution, attribute) * factor, solution.error(attribute) * factor), unit)
+        (name, " ".join(shown(solution, attribute, factor)), unit)
         for attribute, name, factor, unit in SHOWN
         if attribute not in left
     ]

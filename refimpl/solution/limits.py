@@ -23,6 +23,7 @@ from refimpl.surfaces.statistics import rms_slopes
 
 _PLASTICITY = 1.0  # section 8: beyond it contact ceases to be purely elastic (Greenwood and Williamson 1966)
 _COEFFICIENT_ERROR = 0.02  # section 4: what the paper accepts of flat-surface influence coefficients
+_ADHESION = 0.1  # J/m^2: works of adhesion of polymers and rubbers are 0.05 to 0.1
 _RADIUS = 3.0  # elements: whole elements add 0.30 / r to the area of a circle of radius r, here a tenth
 
 
@@ -31,6 +32,7 @@ class Limit(StrEnum):
 
     PLASTICITY = "plasticity index"
     HARDNESS = "peak pressure"
+    SHEAR = "shear strength"
     RMS_GRADIENT = "rms gradient"
     MAX_SLOPE = "maximum slope"
     HALF_SPACE = "half-space"
@@ -90,6 +92,7 @@ def model_warnings(evidence: Evidence) -> tuple[ModelWarning | Notice, ...]:
     found = (
         _plasticity(evidence),
         _hardness(evidence),
+        _shear(evidence),
         *_slopes(evidence),
         _half_space(evidence),
         _border(evidence),
@@ -99,6 +102,7 @@ def model_warnings(evidence: Evidence) -> tuple[ModelWarning | Notice, ...]:
         _active_set(evidence),
         *_neglected(evidence),
         *_plastic_notes(evidence),
+        _adhesion(evidence),
     )
     return tuple(warning for warning in found if warning is not None)
 
@@ -166,6 +170,39 @@ def _hardness(evidence: Evidence) -> ModelWarning | None:
     return ModelWarning(Limit.HARDNESS, largest, hardness, text)
 
 
+def _shear(evidence: Evidence) -> ModelWarning | None:
+    """The softer body's shear strength is ``H / (3 sqrt 3)``: H is three times the yield stress (Tabor
+    1951), which von Mises' shear strength is a sqrt 3rd of."""
+    problem, state = evidence.problem, evidence.state
+    hardness = problem.pair.softer_hardness
+    if hardness is None:
+        return None
+    strength, active = hardness / (3 * math.sqrt(3)), state.contact & ~state.excluded
+    shear = problem.friction.traction(np.minimum(state.pressure, hardness), active)[active]
+    if not (shear > strength).any():
+        return None
+    largest = float(shear.max())
+    text = (
+        f"local friction reaches {largest / 1e6:.4g} MPa, the softer body's shear strength is about "
+        f"{strength / 1e6:.4g} MPa, H / (3 sqrt 3): on {np.mean(shear > strength):.1%} of the contact it "
+        "flows and junctions grow, which no error bar includes"
+    )
+    return ModelWarning(Limit.SHEAR, largest, strength, text)
+
+
+def _adhesion(evidence: Evidence) -> Notice | None:
+    """The work of adhesion whose pull-off force of a smooth ball, ``1.5 pi w R`` (JKR), is the load."""
+    scene, load = evidence.scene, evidence.problem.load
+    if not load or scene.curvature <= 0:
+        return None
+    work = load * scene.curvature / (1.5 * math.pi)
+    text = (
+        f"adhesion is not modelled: a work of adhesion of {work:.2g} J/m^2 would pull smooth bodies "
+        "together with a force as large as the load"
+    )
+    return Notice(text) if work < _ADHESION else None
+
+
 def _area_missing(evidence: Evidence, hardness: float) -> str:
     """By how much an elastic area is smaller than P / H, which is the least at the hardness."""
     least = evidence.state.forces.normal / hardness / evidence.state.contact_area - 1
@@ -218,11 +255,12 @@ def _border(evidence: Evidence) -> ModelWarning | None:
     concave = [
         name for name, sign in (("lower", 1), ("upper", -1)) if _is_concave(getattr(scene, name), sign)
     ]
-    advice = (
-        f"the {' and '.join(concave)} body is concave (sign of its radius?)"
-        if concave
-        else f"enlarge the domain{_expected_size(evidence)}"
-    )
+    if concave:
+        advice = f"the {' and '.join(concave)} body is concave (sign of its radius?)"
+    elif scene.continues:
+        advice = f"enlarge the domain{_expected_size(evidence)}"
+    else:
+        advice = "flat bodies end there; a larger domain or map, or periodic = true, has less of a border"
     text = f"contact reaches the border of the domain on {touching} elements: {advice}"
     return ModelWarning(Limit.BORDER, touching, 0, text) if touching else None
 

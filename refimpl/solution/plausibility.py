@@ -17,7 +17,7 @@ from refimpl.surfaces import GaussianRoughness, SelfAffineRoughness, Sphere
 
 MODULI = (1e6, 2e12)  # Pa: from soft gels to twice diamond
 _STRONG = 10.0  # tau over the mean contact pressure
-_SOFTER = 10.0  # E over the hardness: 20 to 500 of metals, 10 to 20 of ceramics and polymers
+_SOFTER = 5.0  # E over the hardness: 20 to 500 of metals, 10 to 20 of ceramics, 6 to 10 of hard carbon
 _INDEX = 1e3  # plasticity index
 _LENGTHS = ("correlation_length", "short_cut")  # roughness of longer ones is a smooth surface on the domain
 
@@ -56,7 +56,7 @@ def _material(name: str, material: Material, tau: float) -> Iterator[str]:
         return
     if hardness > material.E / _SOFTER:
         yield (
-            f"{name}.hardness, {hardness:.4g} Pa, is above a tenth of E, {material.E:.4g} Pa: are both in Pa?"
+            f"{name}.hardness, {hardness:.4g} Pa, is above a fifth of E, {material.E:.4g} Pa: are both in Pa?"
         )
     if hardness < tau:
         yield f"{name}.hardness, {hardness:.4g} Pa, is below tau, {tau:.4g} Pa: are both in Pa?"

@@ -74,7 +74,9 @@ def audited(page: str, folder: Path, width: int, scheme: str) -> Any:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("width", "scheme"), [(1280, "dark"), (420, "light")])
+@pytest.mark.parametrize(
+    ("width", "scheme"), [(1280, "dark"), pytest.param(420, "light", marks=pytest.mark.nightly)]
+)
 def test_axe_finds_nothing(html: str, tmp_path: Path, width: int, scheme: str) -> None:
     found = audited(html, tmp_path, width, scheme)
     assert found["dark"] is (scheme == "dark")

@@ -13,10 +13,10 @@ from verification.benchmarks import rounds
 from verification.benchmarks.codes import codes
 from verification.benchmarks.problems import FLATS
 from verification.benchmarks.summary import lines, ratios, row
-from verification.cli.output import columns
 from verification.framework.case import jsonable
 from verification.framework.files import Progress, write_result
 from verification.framework.provenance import provenance
+from verification.framework.text_table import columns
 
 CLOCK = (
     "from heights to pressures, kernels and plans included; a solve at 64 x 64 comes first. "

@@ -13,7 +13,8 @@ from typing import Any
 
 from verification.cli import appendix_tables, half_space
 from verification.cli.options import Options, Parsers, declare, number, numbers, option, subcommand
-from verification.cli.output import check_workers, columns, emit, refusal
+from verification.cli.output import check_workers, emit, refusal
+from verification.framework.text_table import columns
 
 # A table is of a slope's square, so none of zero; half a period of positions is all, the rest is its mirror.
 MAP_RANGES = {

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from verification.cli.output import columns
+from refimpl.accuracy.digits import bar_of, digits_of
+from verification.cli.solve_table import QUANTITIES
+from verification.framework.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from refimpl.sensitivities.budget import Budget, Budgets
@@ -14,9 +16,10 @@ if TYPE_CHECKING:
 NAMES = {
     "friction_coefficient_corrected": "mu",
     "contact_area_corrected": "A",
-    "max_pressure": "f_max",
+    "max_pressure": "p_max",
     "binormal_force": "Q",
 }
+_UNITS = {name: (factor, unit) for name, _, factor, unit in QUANTITIES}
 
 
 def document(budgets: Budgets) -> dict[str, object]:
@@ -30,7 +33,8 @@ def document(budgets: Budgets) -> dict[str, object]:
 
 
 def table(budgets: Budgets) -> str:
-    """Parts of each number in per cent of it, and per cents that it changes by for one of a parameter."""
+    """Parts of each number in per cent of it, the number with all of them, and per cents that it changes by
+    for one of a parameter."""
     header = ["", *(NAMES[number] for number in budgets.numbers)]
     numbers = list(budgets.numbers.values())
     widths: dict[str, list[float | None]] = {
@@ -51,10 +55,41 @@ def table(budgets: Budgets) -> str:
         for name in budgets.derivatives.parameters
     ]
     return (
-        "uncertainty budget of mu and A (both corrected), f_max and Q (95 %, in per cent of each):\n"
-        f"{columns([header, *rows])}\n\n"
+        "uncertainty budget of mu and A (both corrected), p_max and Q (95 %, in per cent of each):\n"
+        f"{columns([header, *rows])}\n{_in_words(budgets)}\n\n"
         f"change in per cent for one per cent of a parameter:\n{columns([header, *changes])}"
     )
+
+
+def _in_words(budgets: Budgets) -> str:
+    """Each number with its total in its unit, what that leaves out, and what it does not know."""
+    found = []
+    for number, part in budgets.numbers.items():
+        factor, unit = _UNITS[number]
+        value, total = factor * part.value, factor * part.total
+        found.append(f"{NAMES[number]} = {digits_of(value, total)} {bar_of(total)} {unit}".rstrip())
+    lines = [wrapped(", ".join(found), "with all parts: ")]
+    if all(part.sampling is None for part in budgets.numbers.values()):
+        lines.append("sampling is of means over realisations: other specimens are not in this total (sweep)")
+    if names := _undetermined(budgets):
+        lines.append(
+            wrapped(f"{', '.join(names)}: one realisation does not tell (sweep)", "not determined: ")
+        )
+    return "\n".join(lines)
+
+
+def _undetermined(budgets: Budgets) -> list[str]:
+    """Parameters with a tolerance whose derivative's bar is as long as itself, and would count in the input
+    part of mu."""
+    number = "friction_coefficient_corrected"
+    derivative, scatter = budgets.derivatives.derivatives[number], budgets.derivatives.scatter[number]
+    least = 0.1 * budgets.numbers[number].input
+    return [
+        name
+        for name, tolerance in budgets.tolerances.items()
+        if scatter[name] >= abs(derivative[name])
+        and scatter[name] * abs(budgets.derivatives.parameters[name]) * tolerance > least
+    ]
 
 
 def _parts(part: Budget) -> dict[str, object]:

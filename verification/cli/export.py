@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import argparse
 
-from verification.cli.output import columns, emit, refusal, select_or_refuse
+from verification.cli.output import emit, refusal, select_or_refuse
+from verification.framework.text_table import columns
 
 
 def run(options: argparse.Namespace) -> int:

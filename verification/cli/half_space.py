@@ -8,16 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from verification.cli.options import Options, option, output_file
-from verification.cli.output import (
-    PICTURES,
-    check_outputs,
-    check_suffix,
-    columns,
-    emit,
-    files_of,
-    refusal,
-    wrapped,
-)
+from verification.cli.output import PICTURES, check_outputs, check_suffix, emit, files_of, refusal
+from verification.framework.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from refimpl import Scene

@@ -15,16 +15,8 @@ from verification.cli.options import (
     option,
     output_file,
 )
-from verification.cli.output import (
-    PICTURES,
-    StatusLine,
-    check_outputs,
-    check_suffix,
-    columns,
-    emit,
-    files_of,
-    wrapped,
-)
+from verification.cli.output import PICTURES, StatusLine, check_outputs, check_suffix, emit, files_of
+from verification.framework.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from refimpl.identification import Identification, Interval

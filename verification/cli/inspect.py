@@ -14,16 +14,8 @@ from verification.cli.options import (
     option,
     output_file,
 )
-from verification.cli.output import (
-    PICTURES,
-    StatusLine,
-    check_outputs,
-    check_suffix,
-    columns,
-    emit,
-    plain,
-    wrapped,
-)
+from verification.cli.output import PICTURES, StatusLine, check_outputs, check_suffix, emit, plain
+from verification.framework.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from refimpl import Inspection

@@ -9,7 +9,8 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from verification.cli.options import Options, option, output_file
-from verification.cli.output import check_outputs, columns, emit, refusal, show
+from verification.cli.output import check_outputs, emit, refusal, show
+from verification.framework.text_table import columns
 
 if TYPE_CHECKING:
     from refimpl.scene.keys import Key
@@ -120,4 +121,4 @@ def _table(found: Mapping[str, list[Key]]) -> str:
                 for key in keys
             ]
             parts.append(f"[{title}]\n{columns(rows)}")
-    return "\n\n".join(parts) or "no key has this word"
+    return "\n\n".join(parts) or "no key has this word; what is not modelled: docs/limits.md"

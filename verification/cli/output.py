@@ -1,4 +1,4 @@
-"""Common parts of the subcommands: where output goes, and tables for a terminal."""
+"""Common parts of the subcommands: where output goes, what is refused, progress on a terminal."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import itertools
 import math
 import os
 import sys
-import textwrap
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -19,8 +18,6 @@ if TYPE_CHECKING:
     from refimpl import InputError, Scene
     from verification.framework.case import Result
 
-WIDTH = 100
-"""Columns that tables and texts keep within."""
 PICTURES = (".png", ".svg", ".pdf")
 Selected = TypeVar("Selected")
 
@@ -133,33 +130,6 @@ def show(text: str) -> None:
         if closed.errno not in (errno.EPIPE, errno.EINVAL):
             raise
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
-    """Rows of texts as aligned columns within `WIDTH`: the last one is wrapped where it must be.
-
-    >>> print(columns([["mu", "0.1", "x"], ["approach", "12", "y"]]))
-      mu        0.1  x
-      approach  12   y
-    """
-    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]) - 1)] if rows else []
-    lines = []
-    for row in rows:
-        cells = (cell.ljust(width) + "  " for cell, width in zip(row[:-1], widths, strict=True))
-        lines.append(wrapped(row[-1], indent + "".join(cells)))
-    return "\n".join(lines)
-
-
-def wrapped(text: str, first: str) -> str:
-    """The text after its first words, wrapped within `WIDTH`; what follows starts below it.
-
-    >>> print(wrapped("word " * 20, "reason: "))
-    reason: word word word word word word word word word word word word word word word word word word
-            word word
-    """
-    room = max(WIDTH - len(first), 20)  # beside a very wide table, a narrow column is as good as it gets
-    lines = textwrap.wrap(text, room, break_long_words=False, break_on_hyphens=False) or [""]
-    return f"\n{' ' * len(first)}".join(lines).join((first, "")).rstrip()
 
 
 class StatusLine:

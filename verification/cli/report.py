@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from verification.cli.options import Options, option
-from verification.cli.output import StatusLine, check_outputs, columns, emit, refusal, wrapped
+from verification.cli.output import StatusLine, check_outputs, emit, refusal
 from verification.cli.pdf import PAPERS, compacts, printed
+from verification.framework.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from verification.framework.case import Case

@@ -19,10 +19,10 @@ from typing import Any
 from refimpl.errors import InputError
 from reports import results_page
 from reports.result_files import FOLDER, SUFFIX, read_result, write_result
-from verification.cli.output import columns
 from verification.cli.verify import SELF_TEST
 from verification.framework.case import Status
 from verification.framework.runner import FORMAT
+from verification.framework.text_table import columns
 
 _ROW = re.compile(r"^\| `(\w+)\.json` \| `([^`]*\bFILE\b[^`]*)`", flags=re.M)
 

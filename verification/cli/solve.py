@@ -26,10 +26,10 @@ from verification.cli.output import (
     files_of,
     plain,
     refusal,
-    wrapped,
 )
-from verification.cli.solve_table import document, show_finished, table
+from verification.cli.solve_table import document, not_usable, show_finished, table
 from verification.framework.files import is_stream
+from verification.framework.text_table import wrapped
 
 if TYPE_CHECKING:
     from refimpl import Scene, Solution
@@ -151,8 +151,11 @@ def run(options: argparse.Namespace) -> int:
     found, text = document(solution, options.scene), table(solution, options.scene)
     if tolerances or options.budget:
         text = _with_budget(scene, solution, tolerances, options, found, text)
+    unusable = not_usable(solution) if options.strict else []
+    if unusable:
+        text += f"\n\n--strict: not usable are {', '.join(unusable)}"
     emit(found, options.json, text)
-    return int(not solution.converged or (options.strict and bool(found["not_usable"])))
+    return int(not solution.converged or bool(unusable))
 
 
 def _read_scene(options: argparse.Namespace) -> Scene:

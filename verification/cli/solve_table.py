@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from verification.cli.output import columns, plain, wrapped
+from verification.cli.output import plain
+from verification.framework.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from refimpl import Solution
@@ -30,9 +30,10 @@ QUANTITIES = (
     ("max_pressure", "maximum pressure p_max", 1e-6, "MPa"),
     ("approach", "approach", 1e6, "um"),
     ("normal_force", "normal force N", 1.0, "N"),
-    ("friction_force", "friction force F", 1.0, "N"),
+    ("friction_force_corrected", "friction force F", 1.0, "N"),
     ("binormal_force", "binormal force Q", 1.0, "N"),
 )
+_RESIDUALS = {"gap": "complementarity gap", "law_violations": "law violations, elements"}
 
 
 def show_finished(interrupt: KeyboardInterrupt, scene: str) -> None:
@@ -60,7 +61,10 @@ def table(solution: Solution, scene: str) -> str:
         name = f"plastic area, {solution.plastic_share:.1%} of A"
         found.insert(3, _row(solution, "plastic_area", name, 1e6, "mm^2"))
     summary = solution.summary()
-    certificate = [[name.replace("_", " "), f"{value:.2g}"] for name, value in summary["certificate"].items()]
+    certificate = [
+        [_RESIDUALS.get(name, name.replace("_", " ")), f"{value:.2g}"]
+        for name, value in summary["certificate"].items()
+    ]
     not_modelled = [
         [term["term"], term["reason"], _change(term["effect"])]
         for term in summary["plan"]
@@ -77,46 +81,26 @@ def table(solution: Solution, scene: str) -> str:
     return "\n\n".join(part for part in parts if part)
 
 
-def error_bar(solution: Solution, quantity: str) -> float:
-    """The sum of the parts of a number's uncertainty, in its unit; 0 where none is stated."""
-    return math.fsum(solution.uncertainty.get(quantity, {}).values())
-
-
 def not_usable(solution: Solution) -> list[str]:
     """Return the names of the numbers in the table whose bar exceeds half of their magnitude."""
-    shown = [attribute for attribute, *_ in QUANTITIES]
+    from refimpl.solution.display import verdict_on
+
+    names = [attribute for attribute, *_ in QUANTITIES]
     if solution.plan.includes("plastic"):
-        shown.append("plastic_area")
-    return [name for name in shown if _verdict(solution, name)]
-
-
-def _verdict(solution: Solution, quantity: str) -> str:
-    """Return "(not usable)" or nothing. Symmetry may make Q zero: its magnitude is that of the
-    tangential force, F and Q together. Without friction that of F and Q is N, and that of mu is 1.
-    """
-    from refimpl.accuracy.digits import verdict
-
-    value = getattr(solution, quantity)
-    if not math.isfinite(value):  # without contact
-        return ""
-    scale = {"binormal_force": math.hypot(solution.friction_force, solution.binormal_force)}
-    if not solution.traction.any():  # frictionless
-        scale = dict.fromkeys(("friction_force", "binormal_force"), solution.normal_force)
-        scale |= dict.fromkeys(("friction_coefficient_corrected", "friction_coefficient"), 1.0)
-    return verdict(error_bar(solution, quantity), scale.get(quantity, value))
+        names.append("plastic_area")
+    return [name for name in names if verdict_on(solution, name)]
 
 
 def _row(solution: Solution, quantity: str, name: str, factor: float, unit: str) -> list[str]:
     """Return a row of the table: value and bar with the digits that the bar leaves, and the verdict."""
-    from refimpl.accuracy.digits import bar_of, digits_of
+    from refimpl.solution.display import shown
 
-    error = error_bar(solution, quantity) * factor
-    value = digits_of(getattr(solution, quantity) * factor, error)
-    return [name, value, f"{bar_of(error)} {_verdict(solution, quantity)}".rstrip(), unit]
+    value, *rest = shown(solution, quantity, factor)
+    return [name, value, " ".join(rest), unit]
 
 
 def _change(effect: Mapping[str, float]) -> str:
     """Return the effect of neglecting a term, in words; nothing where it is exactly zero."""
     if not any(effect.values()):
         return ""
-    return f"estimated change of mu {effect['friction']:.1e}, of A {effect['area']:.1e}"
+    return f"changes mu by about {100 * effect['friction']:.2g} %, A by {100 * effect['area']:.2g} %"

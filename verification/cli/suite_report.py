@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from verification.cli.output import columns, judgement, wrapped
+from verification.cli.output import judgement
+from verification.framework.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from verification.cli import suite_report, suite_table
 from verification.cli.options import Options, declare, option, output_file
-from verification.cli.output import check_suffix, columns, emit, refusal, select_or_refuse
+from verification.cli.output import check_suffix, emit, refusal, select_or_refuse
 from verification.cli.suite_report import Judged
+from verification.framework.text_table import columns
 
 if TYPE_CHECKING:
     from verification.framework.case import Result

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from verification.cli import export, suite_run
 from verification.cli.options import Options, option
-from verification.cli.output import check_workers, columns, emit, judgement, refusal, select_or_refuse
+from verification.cli.output import check_workers, emit, judgement, refusal, select_or_refuse
+from verification.framework.text_table import columns
 
 if TYPE_CHECKING:
     from verification.framework.runner import Run

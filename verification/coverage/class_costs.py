@@ -18,7 +18,6 @@ from refimpl.accuracy.refinement import GRID_SIZES, Quantity
 from refimpl.driver.options import Options
 from refimpl.driver.refined import forecast
 from refimpl.scene.discretise import Discretiser
-from verification.cli.output import columns
 from verification.coverage.class_scenes import (
     CLASSES,
     MEASURED,
@@ -33,6 +32,7 @@ from verification.coverage.classes import REFERENCE, reference
 from verification.framework.case import jsonable
 from verification.framework.files import write_result
 from verification.framework.provenance import provenance
+from verification.framework.text_table import columns
 
 ASKED: dict[Quantity, float] = {"friction_coefficient_corrected": 0.02, "contact_area_corrected": 0.05}
 SIZES = [M for M in GRID_SIZES if M < REFERENCE]

@@ -17,7 +17,6 @@ from scipy import stats
 import refimpl as rf
 from refimpl.accuracy.digits import LARGEST_SHARE
 from refimpl.accuracy.grid_features import GridFeatures
-from verification.cli.output import columns
 from verification.coverage.class_scenes import (
     CLASSES,
     DECIMATED,
@@ -33,6 +32,7 @@ from verification.coverage.judge import EDGE_SIZE_BOUND
 from verification.framework.case import jsonable
 from verification.framework.files import write_result
 from verification.framework.provenance import provenance
+from verification.framework.text_table import columns
 
 GRIDS = (48, 64, 96, 128)
 REFERENCE = 512  # along the longer side

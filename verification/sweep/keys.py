@@ -38,7 +38,8 @@ _TEXTS: Mapping[str, tuple[str, str]] = {
     ),
     "first_seed": (
         "whole number",
-        "realisation k, from 0, has the seeds `first_seed + 2 k` (upper) and `first_seed + 2 k + 1` (lower)",
+        "realisation k, from 0, has the seeds `first_seed + 2 k` (upper) and `first_seed + 2 k + 1` (lower); "
+        "not set: 1 with realisations, the scene's own seeds with one",
     ),
     "normalise": ("true or false", "that of Gaussian parts; not set: as the scene says"),
     "vary": ("table", "what varies: every combination of the values is a point of the study"),

@@ -27,7 +27,7 @@ Table = dict[str, Any]
 class Study:
     """A base scene and what varies. Bodies' random parts get the seeds ``first_seed + 2 k`` (upper) and
     ``first_seed + 2 k + 1`` (lower) in realisation k, whatever else varies, so that roughnesses, loads and
-    directions are compared on the same surfaces.
+    directions are compared on the same surfaces; with a ``first_seed`` of None they keep the scene's.
 
     ``vary`` maps names of `AXES`, and of `refimpl.scene.parameters` of surfaces (``lower.surface[0].hurst``,
     counted in the base scene) and materials (``lower.material.E``), to their values (SI, rad); an rms
@@ -41,7 +41,7 @@ class Study:
 
     scene: Table
     realisations: int
-    first_seed: int
+    first_seed: int | None
     normalise: bool | None
     vary: Mapping[str, tuple[Any, ...]]
     settings: Mapping[str, Any]
@@ -99,7 +99,8 @@ class Study:
         friction = {axis: point[axis] for axis in FRICTION_AXES if point[axis] is not None}
         scene["friction"] = self.scene["friction"] | friction
         for side, name in enumerate(("upper", "lower")):
-            scene[name] = self._body(name, self.first_seed + 2 * k + side, point)
+            seed = None if self.first_seed is None else self.first_seed + 2 * k + side
+            scene[name] = self._body(name, seed, point)
         grid = None if point["grid"] is None else int(point["grid"])
         own = {axis: point[axis] for axis in self.own_axes}
         coordinates = (
@@ -123,7 +124,7 @@ class Study:
         }
         return Run({name: coordinates[name] for name in COORDINATES}, inputs)
 
-    def _body(self, name: str, seed: int, point: Mapping[str, Any]) -> Table:
+    def _body(self, name: str, seed: int | None, point: Mapping[str, Any]) -> Table:
         body: Table = self.scene[name]
         rms, length = point[f"{name}_rms"], point["correlation_length"]
         parts = []
@@ -133,7 +134,8 @@ class Study:
             if part["kind"] not in RANDOM:
                 parts.append(part)
             elif rms != 0:
-                change: Table = {} if f"{name}.surface[{k}].seed" in own else {"seed": seed}
+                is_given = seed is None or f"{name}.surface[{k}].seed" in own
+                change: Table = {} if is_given else {"seed": seed}
                 change |= {} if rms is None else {"rms": float(rms)}
                 if part["kind"] == "gaussian":
                     change |= {} if length is None else {"correlation_length": float(length)}

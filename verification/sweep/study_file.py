@@ -67,10 +67,12 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
     vary = _by_axis(vary)
     _refuse_unknown("vary", vary, (*AXES, *varied_names(base)))
     scene = scene_to_dict(base)
+    realisations = _whole("realisations", table.get("realisations", 1), at_least=1)
+    first_seed = table.get("first_seed", 1 if realisations > 1 else None)
     study = Study(
         scene=scene,
-        realisations=_whole("realisations", table.get("realisations", 1), at_least=1),
-        first_seed=_whole("first_seed", table.get("first_seed", 1), at_least=0),
+        realisations=realisations,
+        first_seed=None if first_seed is None else _whole("first_seed", first_seed, at_least=0),
         normalise=normalise,
         vary={axis: _values(axis, vary[axis], folder) for axis in vary},
         settings=dict(settings),
@@ -133,7 +135,7 @@ def _check(study: Study) -> None:
         _whole("vary.grid", M, at_least=1)
     if study.scene["periodic"] and study.settings.get("method") == "paper":
         raise InputError("solve.method", "paper", "dense or fft for a periodic scene")
-    _whole("first_seed", study.first_seed, at_least=0, below=2**63 - 2 * study.realisations)
+    _whole("first_seed", study.first_seed or 0, at_least=0, below=2**63 - 2 * study.realisations)
     posable.check(study)
 
 

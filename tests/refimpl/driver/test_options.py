@@ -34,7 +34,7 @@ def asked(**given: Any) -> Options:
             {"method": "paper", "scene": replace(HARD, upper=HARD.lower, periodic=True)},
             "method = 'paper': expected dense or fft for a periodic",
         ),
-        ({"scene": replace(HARD, load=161.0)}, "load = 161.0: expected at most 160 N, the hardness times"),
+        ({"scene": replace(HARD, load=161.0)}, "load = 161.0: expected at most 160 N, the softer"),
         ({"limits": Limits(max_seconds=9.0)}, "max_seconds = 9.0: expected none without an accuracy"),
     ],
 )

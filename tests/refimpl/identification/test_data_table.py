@@ -26,6 +26,15 @@ def test_forces_become_coefficients_with_their_uncertainty(tmp_path: Path) -> No
     assert rows == (Row(10.0, 0.2, 0.05), Row(20.0, 0.15, 0.05, sliding_offset=1e-6))
 
 
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_semicolons_and_tabs_with_decimal_commas(tmp_path: Path, separator: str) -> None:
+    text = "load;mu;u_mu;lower_file\n10,5;0,2;0,05;a,b.npy\n20;0.15;1e-2;\n".replace(";", separator)
+    rows = read_rows(_written(tmp_path, text))
+    assert rows == (Row(10.5, 0.2, 0.05, lower_file=str(tmp_path / "a,b.npy")), Row(20.0, 0.15, 0.01))
+    with pytest.raises(InputError, match=r"line 2: load = '1.000.5'"):
+        read_rows(_written(tmp_path, text.replace("10,5", "1.000,5")))
+
+
 def test_a_row_overrides_the_scene() -> None:
     scene = Row(9.0, 0.1, 0.01, sliding_direction=0.5, sliding_offset=2e-6).of(read_scene("hertz"))
     assert (scene.load, scene.sliding_direction, scene.sliding_offset) == (9.0, 0.5, 2e-6)
@@ -59,6 +68,8 @@ def test_a_file_needs_a_measured_surface() -> None:
         ("load [kN],mu,u_mu\n5,0.1,0.01\n", "in SI units"),
         ("load,load,mu,u_mu\n5,5,0.1,0.01\n", "once"),
         ("load,mu,u_mu\n0.005,0.1,0.01\n9,0.1,0.01\n", "kN mixed"),
+        ("load,friction_force,u_friction_force\n1,150,1\n5,600,4\n", "friction and load in N"),
+        ("load,mu,u_mu\n1,0.15,2\n5,0.12,2\n", "in per cent"),
         ("load,friction_force,u_friction_force\n5,0.5,0.1\n9,0.0009,0.0001\n", "N and kN mixed"),
         ('load,mu,u_mu\n"5,0.1,0.01\n', "CSV"),
         ("load,mu,u_mu\n" + "5,0.1,0.1\n" * 1000, "'1000 rows at 1 load': expected at least two"),

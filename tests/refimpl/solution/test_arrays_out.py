@@ -120,18 +120,19 @@ SHOWN = {  # value and error in SI, the unit there, and the row
     "contact_area": (2.5e-6, 3e-7, "m^2", "contact area A 2.5 +- 0.3 mm^2"),
     "contact_area_share": (0.31, 0.04, "1", "A/A0 0.31 +- 0.04"),
     "plastic_area": (0.7e-6, 0.0, "m^2", "plastic area 0.7 mm^2"),
-    "max_pressure": (8.1e8, math.inf, "Pa", "maximum pressure p_max 810 (error unbounded) MPa"),
-    "mean_pressure": (6.2e7, 9e7, "Pa", "mean contact pressure 62 +- 9e+01 (not usable) MPa"),
+    "max_pressure": (8.1e8, math.inf, "Pa", "maximum pressure p_max 810 unbounded (not usable) MPa"),
+    "mean_pressure": (6.2e7, 9e7, "Pa", "mean contact pressure 62 +- 90 (not usable) MPa"),
     "mean_gap": (4.5e-6, 0.0, "m", "mean gap 4.5 um"),
-    "approach": (3.14e-6, 0.96e-8, "m", "approach 3.14 +- 0.01 um"),
+    "approach": (3.14e-6, 0.96e-8, "m", "approach 3.140 +- 0.010 um"),
     "normal_force": (70.0, 0.0, "N", "normal force N 70 N"),
-    "friction_force": (-8.0, 0.5, "N", "friction force F -8.0 +- 0.5 N"),
+    "friction_force_corrected": (-8.0, 0.5, "N", "friction force F -8.0 +- 0.5 N"),
     "binormal_force": (math.nan, 0.0, "N", "binormal force Q n/a N"),
 }
 FINE = np.zeros((4, 65))
 FINE[2, 3], FINE[3, 64] = 8.0, 4.0
 MADE: Any = SimpleNamespace(
     **{name: row[0] for name, row in SHOWN.items()}, error=lambda name: SHOWN[name][1], pressure=FINE,
+    traction=FINE, friction_force=-8.0,
     plan=SimpleNamespace(method="dense"), status=rf.Status.CYCLED, grid="2 x 3", warnings=("a < b",),
 )  # fmt: skip
 

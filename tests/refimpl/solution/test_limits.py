@@ -85,6 +85,21 @@ def test_peak_pressure_against_the_softer_hardness() -> None:
     assert not {Limit.HARDNESS, Limit.PLASTICITY} & set(named(rf.solve(unknown, 32)))
 
 
+def test_friction_against_the_softer_bodys_shear_strength() -> None:
+    strong = replace(SMOOTH, friction=rf.Friction(tau=150e6, beta=0.08))
+    warned = named(rf.solve(strong, 32))[Limit.SHEAR]  # 166 MPa more times beta
+    assert warned.number > warned.allowed == pytest.approx(800e6 / 27**0.5)
+    assert Limit.SHEAR not in named(rf.solve(replace(SMOOTH, friction=rf.Friction(tau=150e6)), 32))
+
+
+def test_a_soft_ball_under_its_pull_off_force_is_told_of_adhesion() -> None:
+    rubber, glass = rf.Body(rf.Material(E=2e6, nu=0.49), rf.Flat()), rf.Material(E=70e9, nu=0.2)
+    lens = rf.Scene(rf.Body(glass, rf.Sphere(radius=5e-3)), rubber, rf.Friction(), load=1e-3, side=1e-3)
+    note = next(w for w in rf.solve(lens, 32).warnings if "adhesion" in w)
+    assert f"{1e-3 / (1.5 * np.pi * 5e-3):.2g} J/m^2" in note  # JKR: 1.5 pi w R
+    assert not any("adhesion" in w for w in rf.solve(replace(lens, load=0.1), 32).warnings)
+
+
 def test_slopes_against_appendix_a() -> None:
     s = rf.solve(STEEP, 64)
     steep = named(s)

@@ -12,6 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import refimpl as rf
+from refimpl import plain
 from refimpl.grid import Array, Mask
 from refimpl.model.problem import Problem
 from refimpl.model.state import Status
@@ -323,3 +324,15 @@ def test_tau_of_several_times_the_pressure_is_given_up(method: Literal["fft", "d
     violations = found.certificate.law_violations * found.grid.element_area
     assert found.uncertainty["friction_coefficient"]["active set"] >= 2e7 * violations / 0.1 > 0
     assert found.normal_force == pytest.approx(0.1, rel=1e-8)
+
+
+def test_a_tau_in_the_wrong_unit_ends_the_dense_method_within_its_steps(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Slopes and contact follow each other for ever; the status says so, and the reason names tau."""
+    steps, solve_parts = [], plain.Model.solve_parts
+    monkeypatch.setattr(plain.Model, "solve_parts", lambda *given: (steps.append(1), solve_parts(*given)))
+    found = rf.solve(replace(FAINT, friction=rf.Friction(tau=150e9, beta=0.08)), 4, method="dense")
+    assert found.status is rf.Status.ITERATION_LIMIT
+    assert len(steps) <= 750 + 75 * 16
+    assert any(str(warning).startswith("tau, 1.5e+11 Pa, is") for warning in found.warnings)

@@ -187,8 +187,7 @@ def test_level_is_fitted_in_the_window_only(tmp_path: Path, grid: Grid) -> None:
     z = np.full((NX, NY), 5e-6)
     z[:, 13:37] = (np.arange(NX) * 1e-9)[:, None]  # all that a window of 7.2 um along y holds
     surface = MeasuredSurface(write_npy(tmp_path / "a.npy", z).path, unit="m", pixel_size=(DX, DY))
-    level = surface.describe(grid)[2]
-    assert "'plane'" in level
+    (level,) = (line for line in surface.describe(grid) if "level 'plane'" in line)
     slope_x, slope_y = (
         float(word.strip("()")) for word in level.split("slopes ")[1].split(")")[0].split(" x ")
     )
@@ -221,7 +220,7 @@ def test_texts_are_of_the_map_as_it_lies(tmp_path: Path) -> None:
     grid = Grid((8, 12), (4e-6, 1.2e-6))
     assert surface.pitch((1e-6, 1e-6)) == DX
     assert surface.on_upper_body().reading is surface.reading
-    assert "is finer than the measured pixel, 3.1e-07 x 1.5e-07 m" in surface.notes(grid)[0]
+    assert "is finer than the measured pixel, 3.1e-07 x 1.5e-07 m" in surface.notes(grid)[-1]
     assert (
         "the window of 4e-06 x 1.2e-06 m about (4e-06, 7e-06) m is used, 13 x 8" in surface.describe(grid)[1]
     )

@@ -77,7 +77,7 @@ def test_stated_defaults_are_what_is_used() -> None:
     stated = {name: json.loads(default) for name, default in keys.items() if default != "-"}
     assert stated == {"sliding_direction": 0.0, "sliding_offset": 0.0, "periodic": False}
     bare = study_from_dict({"scene": "table1-rough", "vary": {"grid": 8}})
-    whole = {"realisations": 1, "first_seed": 1, "vary": {"grid": 8}, "solve": {}}
+    whole = {"realisations": 1, "vary": {"grid": 8}, "solve": {}}
     assert study_from_dict({"scene": "table1-rough", **whole}) == bare
 
 
@@ -103,7 +103,7 @@ def test_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert printed.startswith("[surface, self_affine]\n  hurst")
     assert "0 < H <= 1" in printed
     assert main(["keys", "no-such-word"]) == 1
-    assert capsys.readouterr().out == "no key has this word\n"
+    assert capsys.readouterr().out == "no key has this word; what is not modelled: docs/limits.md\n"
     assert main(["keys", "tau", "--json", "-"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert [key["unit"] for key in document["friction"] if key["name"] == "tau"] == ["Pa"]

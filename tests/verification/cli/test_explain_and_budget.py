@@ -223,9 +223,11 @@ def test_a_budget_in_per_cent() -> None:
     shares, changes = budget.table(made_up()).split("\n\n")
     rows = {" ".join(line.split()) for line in shares.splitlines()}
     assert rows >= {
-        "mu A f_max Q", "numerical 3 3 3 3", "input 4 4 4 4", "load, 0.1 4 4 4 4", "sampling - 12 - -",
+        "mu A p_max Q", "numerical 3 3 3 3", "input 4 4 4 4", "load, 0.1 4 4 4 4", "sampling - 12 - -",
         "model form 3 3 3 3", "coefficients 2 2 2 2", "cosines 1 1 1 1", "total 8 16 8 8",
     }  # fmt: skip
+    whole = "mu = 0.50 +- 0.04, A = 4.0 +- 0.6 mm^2, p_max = 200 +- 16 MPa, Q = -0.25 +- 0.02 N"
+    assert f"with all parts: {whole}" in " ".join(shares.split())
     # 0.2 * 2 / 0.5, 1e-6 * 2 / 4e-6, -5e7 * 2 / 2e8, -0.1 * 2 / -0.25; scatter is half of each
     assert {" ".join(line.split()) for line in changes.splitlines()} >= {
         "load +0.800 +-0.4 +0.500 +-0.25 -0.500 +-0.25 +0.800 +-0.4",

@@ -13,6 +13,7 @@ import pytest
 import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.measured import measured_surface as measured
+from refimpl.scene.scene_file import read_scene, scene_to_dict
 from verification.sweep import study as study_module
 from verification.sweep.run import COORDINATES, execute
 from verification.sweep.study import Study
@@ -67,6 +68,19 @@ def test_every_input_and_the_code_change_the_key(monkeypatch: pytest.MonkeyPatch
 @pytest.mark.parametrize("name", shipped_studies())
 def test_shipped_studies_are_good(name: str) -> None:
     assert tuple(next(iter(read_study(name).runs())).coordinates) == COORDINATES
+
+
+def test_one_realisation_without_a_first_seed_is_the_scene_itself() -> None:
+    base = scene_to_dict(read_scene("table1-rough"))
+    for side, seed in (("upper", 5), ("lower", 8)):
+        for part in base[side]["surface"]:
+            part |= {"seed": seed} if part["kind"] == "gaussian" else {}
+    bare = study_from_dict({"scene": "table1-rough", "vary": {"grid": 8}})
+    scene = next(replace(bare, scene=base).runs()).inputs["scene"]
+    assert {name: scene[name] for name in ("upper", "lower")} == {
+        name: base[name] for name in ("upper", "lower")
+    }
+    assert study_from_dict({"scene": "table1-rough", "vary": {"grid": 8}, "realisations": 2}).first_seed == 1
 
 
 PATH, SEED = "lower.surface[0].path", "lower.surface[0].seed"

@@ -172,14 +172,14 @@ def numbers(profiles: Profiles, solution: rf.Solution) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Judged:
-    """One contact: relative errors by quantity, true, stated, and left by first order.
+    """One contact: relative errors by quantity: true, stated, and of first order.
 
     ``warned``: the solution warns of the half-space.
     """
 
     true: dict[str, float]
     stated: dict[str, float]
-    left: dict[str, float]
+    first_order: dict[str, float]
     warned: bool
 
 
@@ -211,8 +211,7 @@ def judged(profiles: Profiles, M: int = 384) -> Judged:
         if abs(value) > NO_FRICTION:
             true[name] = by_fem[name] / value - 1
             change[name] = receded[name] / value - 1
-    left = {q: (1 + t) / (1 + change[q]) - 1 for q, t in true.items()}
     steep = steepness(solution.problem, solution.contact)
     stated = {q: (1 + FINITE_STRAIN) * abs(c) + SECOND_ORDER[q] * steep for q, c in change.items()}
     warned = any(getattr(w, "limit", None) == "half-space" for w in solution.warnings)
-    return Judged(true, stated, left, warned)
+    return Judged(true, stated, change, warned)

@@ -19,12 +19,12 @@ SAME = 1e-3
             "tungsten", "Diamond tip on tungsten: approach before the first yield",
             "Increments of the approach of five indentations, with the radius fitted to six others, lie "
             "within U_val, and within 3 %",
-            0.03, "largest |E| / D, 2.1 %, rounded up; U_val is 3 % there"),
+            0.03, "set after the result: largest |E| / D, 2.1 %, rounded up; U_val is 3 % there"),
         "validation/rubber": (
             "rubber", "Glass tip on silicone rubber: approach, with nothing fitted",
             "Increments of the approach lie within U_val, their ratio does not: the model, which has no "
             "adhesion, misses it by 18 %",
-            0.19, "largest |E| / D, that of the ratio, rounded up"),
+            0.19, "set after the result: largest |E| / D, that of the ratio, rounded up"),
         "validation/film": (
             "film", "Balls on films of molybdenum disulphide: friction over load",
             "The exponent of mu over the load lies within U_val",
@@ -32,7 +32,7 @@ SAME = 1e-3
         "validation/mica": (
             "mica", "Gold asperity on mica: friction stress, with nothing fitted",
             "A smooth asperity, for want of the roughness, predicts seven times the measured friction stress",
-            6.1, "largest |E| / D, rounded up: no claim to accuracy"),
+            6.1, "set after the result: largest |E| / D, rounded up; no claim to accuracy"),
     },
     metric="at_most",
     tier="full",
