@@ -1,4 +1,4 @@
-"""``python -m verification.benchmarks``: measure in turns, append the run to a record and print it."""
+"""``python -m verification.benchmarks``: measure in turns, append the runs to a record and print them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from reports.result_files import read_result
-from verification.benchmarks import rounds
+from verification.benchmarks import page, rounds
 from verification.benchmarks.codes import codes
 from verification.benchmarks.problems import FLATS
 from verification.benchmarks.summary import lines, ratios, row
@@ -25,22 +25,25 @@ CLOCK = (
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Measure, append and print."""
+    """Measure, append and print: on one thread last, whose seconds the report shows."""
     parser = argparse.ArgumentParser(prog="python -m verification.benchmarks", description=__doc__)
     installed = [code.name for code in codes().values() if code.version is not None]
     parser.add_argument("--grids", nargs="+", type=int, default=[128, 256, 512], help="elements per side")
     parser.add_argument("--codes", nargs="+", choices=installed, default=installed)
     parser.add_argument("--kinds", nargs="+", choices=list(FLATS), default=list(FLATS))
     parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--threads", type=int, default=2, help="for every code alike")
+    parser.add_argument("--threads", type=int, nargs="*", default=[1], help="for every code alike")
     parser.add_argument("--limit", type=float, default=600.0, help="seconds for one solve")
     parser.add_argument("--json", type=Path, required=True, help="record to append the run to")
-    options = parser.parse_args(arguments)
-    run = measured(
-        options.grids, options.codes, options.kinds, options.rounds, options.threads, options.limit
+    parser.add_argument(
+        "--page", action="store_true", help="print the table of docs/costs.md, measure nothing"
     )
-    append(run, options.json)
-    print(columns(lines(run["rows"], run["ratios"]), indent=""))
+    options = parser.parse_args(arguments)
+    for threads in () if options.page else sorted(options.threads, reverse=True):
+        run = measured(options.grids, options.codes, options.kinds, options.rounds, threads, options.limit)
+        append(run, options.json)
+        print(columns(lines(run["rows"], run["ratios"]), indent=""))
+    print(*page.lines(read_result(options.json)["runs"]), sep="\n")
 
 
 def measured(

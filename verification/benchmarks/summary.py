@@ -10,7 +10,9 @@ from typing import Any
 from verification.benchmarks.codes import ALONE, OWN
 from verification.benchmarks.rounds import TARGET, Found, Turns, error
 
-TIMED = ("seconds", "processor seconds", "peak memory", "seconds again")
+AGAIN = "seconds again"  # key of a second solve in the same process
+CLOCKS = ("seconds", "processor seconds", AGAIN)
+TIMED = (*CLOCKS, "peak memory")
 JUDGED = ("gap", "balance", "penetration", "tension", "area", "peak", "converged", "operations", "padded box")
 
 
@@ -49,23 +51,24 @@ def ratios(turns: Sequence[Turns]) -> dict[str, object]:
     """Ratio of every code's seconds to this code's on one problem, by rounds; and the least of the peers'.
 
     The least by the recommended set-ups, by any, over the solver alone, and over it in a process that has
-    solved the same before. Processor seconds beside: they hear less of what else the machine does.
+    solved the same before. Processor seconds beside: they hear less of what else the machine does. Under
+    `ALONE` the same over the solver alone.
     """
     by_code = {one.code: one.rounds for one in turns if one.rounds}
-    own = by_code.pop(OWN, None)
+    own, alone = by_code.pop(OWN, None), by_code.get(ALONE, [])
     if own is None:
         return {}
     found: dict[str, object] = {
         code: {clock: _over(rounds, own, clock) for clock in ("seconds", "processor seconds")}
+        | {ALONE: {clock: _over(rounds, alone, clock) for clock in CLOCKS if _timed(clock, rounds, alone)}}
         for code, rounds in by_code.items()
     }
     peers = {code: rounds for code, rounds in by_code.items() if not code.startswith(OWN)}
     recommended = {code: rounds for code, rounds in peers.items() if "+" not in code}
     found |= _fastest("fastest peer", recommended, own, "seconds")
     found |= _fastest("fastest set-up of a peer", peers, own, "seconds")
-    alone = by_code.get(ALONE, [])
     found |= _fastest("fastest peer, solver alone", recommended, alone, "seconds")
-    found |= _fastest("fastest peer, solver alone, again", recommended, alone, "seconds again")
+    found |= _fastest("fastest peer, solver alone, again", recommended, alone, AGAIN)
     return found
 
 
@@ -73,12 +76,17 @@ def _over(theirs: Sequence[Found], ours: Sequence[Found], clock: str) -> dict[st
     return spread(one[clock] / other[clock] for one, other in zip(theirs, ours, strict=False))
 
 
+def _timed(clock: str, theirs: Sequence[Found], ours: Sequence[Found]) -> bool:
+    """Whether both were timed by that clock, in every round."""
+    return bool(ours) and all(one[clock] is not None for one in (*theirs, *ours))
+
+
 def _fastest(
     name: str, peers: Mapping[str, Sequence[Found]], ours: Sequence[Found], clock: str
 ) -> dict[str, object]:
     """The peer of the least median ratio, if any was timed by that clock."""
-    timed = {code: rounds for code, rounds in peers.items() if all(one[clock] is not None for one in rounds)}
-    if not timed or not ours or any(one[clock] is None for one in ours):
+    timed = {code: rounds for code, rounds in peers.items() if _timed(clock, rounds, ours)}
+    if not timed:
         return {}
     medians = {code: _over(rounds, ours, clock)["median"] for code, rounds in timed.items()}
     fastest = min(medians, key=lambda code: medians[code])

@@ -13,6 +13,8 @@ from refimpl.model.problem import Problem
 from refimpl.operators.preconditioner import Apply
 from refimpl.solvers.production.constants import (
     CAPPED_STEP,
+    COARSE_SIDE,
+    COARSE_TOLERANCE,
     COARSEST,
     COARSEST_OF_TWO,
     FIRST_LENGTH,
@@ -59,6 +61,15 @@ def _coarser(shape: Shape) -> Shape:
     quarter = tuple((n + 1) // 2 for n in half)
     n, m = quarter if max(shape) <= QUARTERED and min(quarter) >= COARSEST else half
     return n, m
+
+
+def coarse_tolerance(shape: Shape) -> float:
+    """Residual of a coarse grid, below the error that the next grid's start has from interpolation.
+
+    >>> coarse_tolerance((256, 256)), coarse_tolerance((1024, 512))
+    (0.001, 0.0005)
+    """
+    return COARSE_TOLERANCE * min(1.0, COARSE_SIDE / max(shape))
 
 
 def coarsened(fine: Problem, shape: Shape) -> Problem:

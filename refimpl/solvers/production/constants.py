@@ -9,6 +9,8 @@ COARSEST_OF_TWO = 16  # elements per side where no coarser grid would exist othe
 QUARTERED = 128  # elements per side up to which a grid of half as many costs more steps than it saves
 COARSE_TOLERANCE = 1e-3  # residual of a coarse grid: only an initial guess; its grid error is larger
 #                          (1e-2: 4 % fewer transforms on 40 rough scenes, 50 % more on smooth 1024 x 1024)
+COARSE_SIDE = 512  # elements per side up to which it holds; beyond, it falls as the next start's error does
+#                    (without: 11 % more transforms on smooth 2048 x 2048 with friction, 10 % on rough)
 START_MISFIT = 0.02  # largest misfit of a start on the same grid: 1 % of load saves up to a third of the
 #                      transforms, 5 % costs up to two thirds more
 CAPPED_STEP = 0.25  # share of an element's stiffness in the step that shows who reaches the cap (0.12 and

@@ -13,13 +13,14 @@ from refimpl.operators.influence import WindowInfluence, whole_grid_influence, w
 from refimpl.operators.preconditioner import Apply, SpectralPreconditioner, extended
 from refimpl.solvers.production.coarse_grids import (
     InitialGuess,
+    coarse_tolerance,
     likely_capped,
     likely_contact,
     nested_problems,
     sharpened,
     winkler_pressure,
 )
-from refimpl.solvers.production.constants import COARSE_TOLERANCE, MARGIN, START_MISFIT
+from refimpl.solvers.production.constants import MARGIN, START_MISFIT
 from refimpl.solvers.production.level import LevelSolver
 from refimpl.solvers.tau_active_set import first_set
 
@@ -40,7 +41,7 @@ def solve_fft(
     coarsest = nested.pop(0)
     solver = from_guess(coarsest, start, counter) if start else _from_winkler(coarsest, counter)
     while nested:
-        solver.solve(COARSE_TOLERANCE, first_set(solver.problem))
+        solver.solve(coarse_tolerance(solver.problem.grid.shape), first_set(solver.problem))
         iterations[f"CG at {solver.whole.grid}"] = solver.cg_iterations
         solver = from_guess(nested.pop(0), solver.initial_guess(), counter)
     while True:

@@ -1,0 +1,114 @@
+"""The table of docs/costs.md, from the record of runs: ``python -m verification.benchmarks --page``.
+
+Of each number of threads the newest run counts in which ours and ASPHER took part with all their set-ups. A
+cell is the range over the rounds, or the ratio of medians where a run recorded no other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+from verification.benchmarks.codes import ALONE, OWN, SHEARED, SLOPED
+from verification.benchmarks.summary import AGAIN
+
+GRIDS = (128, 256, 512, 1024, 2048)
+PEER, QUICKEST = "aspher", "aspher+options"
+EVERY = frozenset({OWN, ALONE, PEER, QUICKEST, SHEARED, SLOPED})
+
+Ratios = Mapping[str, Any]
+Rows = Mapping[str, Any]
+Spread = Mapping[str, float]
+"""Median, and where it is known the least and the most."""
+Number = Callable[[Ratios, Rows], Spread | None]
+
+
+def over(code: str, clock: str = "seconds", by: str = OWN) -> Number:
+    """A code's ratio to this code or to its solver alone, within rounds or, in older records, of medians."""
+
+    def number(ratios: Ratios, rows: Rows) -> Spread | None:
+        if by == OWN:
+            return dict(ratios[code][clock])
+        if by in ratios[code]:
+            known: dict[str, Spread] = ratios[code][by]
+            return known.get(clock)
+        if not (clock in rows[code] and clock in rows[by]):
+            return None
+        return {"median": rows[code][clock]["median"] / rows[by][clock]["median"]}
+
+    return number
+
+
+def memory(ratios: Ratios, rows: Rows) -> Spread | None:
+    """ASPHER's memory of a solve, as a ratio to this code."""
+    theirs, ours = (rows[code]["memory of the solve"]["median"] for code in (PEER, OWN))
+    return {"median": theirs / ours}
+
+
+TABLE: dict[str, Number] = {
+    "ASPHER 0.1.3 over our solver, both from a gap to a pressure": over(PEER, by=ALONE),
+    "the same in a process that has solved it before": over(PEER, AGAIN, by=ALONE),
+    "ASPHER with its quickest options over our solver": over(QUICKEST, by=ALONE),
+    "ASPHER over this code, from a scene to numbers with error bars": over(PEER),
+    "the same with ASPHER's quickest options": over(QUICKEST),
+    "the same in processor time": over(PEER, "processor seconds"),
+    "memory of a solve, ASPHER's over this code's": memory,
+    "our convolutions in all": lambda ratios, rows: {"median": rows[OWN]["convolution equivalents"]},
+    "this code with friction over without": over(SHEARED),
+    "this code with friction and slopes over without": over(SLOPED),
+}
+
+
+def newest(
+    runs: Sequence[Mapping[str, Any]], codes: frozenset[str] = EVERY
+) -> dict[tuple[str, int, int], tuple[Ratios, Rows]]:
+    """Ratios and rows by surface, grid and threads, of the last run in which all of the codes took part."""
+    found: dict[tuple[str, int, int], tuple[Ratios, Rows]] = {}
+    for run in runs:
+        if {row["code"] for row in run["rows"]} >= codes:
+            for ratios in run["ratios"]:
+                at = ratios["kind"], ratios["M"]
+                rows = {row["code"]: row for row in run["rows"] if (row["kind"], row["M"]) == at}
+                found[(*at, run["conditions"]["threads"])] = ratios, rows
+    return found
+
+
+def table(runs: Sequence[Mapping[str, Any]]) -> list[list[str]]:
+    """Rows of the table, each with its label and a cell a grid: smooth / rough."""
+    found = newest(runs)
+
+    def cell(number: Number, kind: str, M: int) -> str:
+        return shown(number(*found[at]) for at in found if at[:2] == (kind, M))
+
+    return [
+        [label, *(" / ".join(cell(number, kind, M) for kind in ("smooth", "rough")) for M in GRIDS)]
+        for label, number in TABLE.items()
+    ]
+
+
+def shown(numbers: Iterable[Spread | None]) -> str:
+    """The range of numbers with their spreads, on any number of threads.
+
+    >>> shown([{"median": 3.1, "least": 2.96, "most": 3.4}, {"median": 12.2}]), shown([None])
+    ('3.0-12', '-')
+    """
+    known = [number for number in numbers if number is not None]
+    if not known:
+        return "-"
+    ends = min(n.get("least", n["median"]) for n in known), max(n.get("most", n["median"]) for n in known)
+    return "-".join(dict.fromkeys(f"{end:.1f}" if end < 9.95 else f"{end:.0f}" for end in ends))
+
+
+def lines(runs: Sequence[Mapping[str, Any]]) -> list[str]:
+    """The table in Markdown, and one line for each run of the record: where and how it was made."""
+    text = [f"| | {' | '.join(map(str, GRIDS))} |", "|---" * (1 + len(GRIDS)) + "|"]
+    text += [f"| {' | '.join(row)} |" for row in table(runs)]
+    for run in runs:
+        machine, asked = run["provenance"]["machine"], run["conditions"]
+        sizes = ", ".join(map(str, sorted({row["M"] for row in run["rows"]})))
+        load = f"{asked['load average']['before'][0]:.1f} to {asked['load average']['after'][0]:.1f}"
+        text.append(
+            f"{run['provenance']['date'][:10]}: {machine['processor']}, {machine['cores']} cores, threads "
+            f"{asked['threads']}, {asked['rounds']} rounds at {sizes}, load {load}"
+        )
+    return text
