@@ -50,7 +50,7 @@ AGREEMENT = Figure(
     "*",
     ("quantity", "label", "printed", "computed", "uncertainty 95 %", "computed / printed"),
     _draw,
-    "Every number that the paper prints against ours, by quantity (Table 3: fine mesh). Bars are u at 95 %: "
+    "Printed numbers against ours, by quantity (Table 3: fine mesh). Bars are u at 95 %: "
     "the sampling of both ensembles, where there are two, and the rounding of the printed number.",
     (7.4, 4.6),
 )

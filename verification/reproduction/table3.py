@@ -32,9 +32,22 @@ class Cell:
         return self.ours.mean / self.printed - 1
 
     @property
-    def within_sampling(self) -> bool:
-        """True if the deviation is within the 95 % half width of a difference of two such ensembles."""
-        return abs(self.ours.mean - self.printed) <= math.sqrt(2) * self.ours.half_width
+    def within(self) -> bool:
+        """True if the deviation is within u, 95 %: the sampling of two such ensembles, and half a digit."""
+        u = math.hypot(math.sqrt(2) * self.ours.half_width, half_digit(self.printed))
+        return abs(self.ours.mean - self.printed) <= u
+
+
+def half_digit(printed: float) -> float:
+    """Half a unit of the last printed digit: mu and A (0.1 mm^2) have two decimals of 0.1, pressures three
+    digits.
+
+    >>> half_digit(0.218), half_digit(4.4e-8), half_digit(1.64e8), half_digit(1.91e9)
+    (0.0005, 5e-10, 500000.0, 5000000.0)
+    """
+    if printed < 1.0:
+        return 5e-10 if printed < 1e-3 else 5e-4
+    return 5e5 if printed < 1e9 else 5e6
 
 
 @cache
