@@ -136,20 +136,22 @@ def _verdict(
         return claim.verdict
     given = [claim.verdict] if claim.verdict else []
     given += [verdict_of(groups.get(quantity, ())) for quantity in claim.numbers]
-    given += ["confirmed" if ascending(text, by_name) else "not confirmed" for text in claim.holds]
+    given += [ascending(filled(text, by_name)) for text in claim.holds]
     if not claim.own:
         given += [v for v in map(recorded, cases) if v is not None]
     return min(given, key=VERDICTS.index, default=NOT_ESTABLISHED)
 
 
-def ascending(text: str, cases: Mapping[str, Case]) -> bool:
-    """Return whether "a < b < c", with numbers of cases in it, is true.
+def ascending(text: str) -> str:
+    """The verdict on "a < b < c", with its numbers in place.
 
-    >>> ascending("{a/1 | value |} < 2 < 3", {"a/1": {"value": 1.5, "data": {}}}), ascending("2 < 1", {})
-    (True, False)
+    >>> ascending("1.5 < 2 < 3"), ascending("2 < 1"), ascending("1 < n/a")
+    ('confirmed', 'not confirmed', 'not established')
     """
-    values = [float("nan") if v == MISSING else float(v) for v in filled(text, cases).split(" < ")]
-    return all(a < b for a, b in pairwise(values))
+    values = text.split(" < ")
+    if MISSING in values:
+        return NOT_ESTABLISHED
+    return "confirmed" if all(float(a) < float(b) for a, b in pairwise(values)) else "not confirmed"
 
 
 def statements(claims: Iterable[Judged]) -> dict[str, list[Judged]]:

@@ -142,9 +142,8 @@ def _coverage(studies: Mapping[str, Any]) -> list[str]:
         row for row in studies.get("coverage_corrected", {}).get("table", ()) if row["number"] in COVERED
     ]
     said = [
-        f"{COVERED[row['number']]} in {percent(row['held_of_usable'])} of the {percent(row['usable'])} of "
-        f"{row['scenes']} scenes where it is usable "
-        f"({number(row['median_bar_over_error'], 2)} times the error)"
+        f"{COVERED[row['number']]} {percent(row['held_of_usable'])}, {percent(row['usable'])}, "
+        f"{number(row['median_bar_over_error'], 2)}"
         for row in table
         if row["class"] is None and row["held_of_usable"] is not None
     ]
@@ -156,9 +155,10 @@ def _coverage(studies: Mapping[str, Any]) -> list[str]:
     if not said:
         return []
     return [
-        "95 % error bars of single grids against far finer grids of the same solver, on random scenes. "
-        "A bar is usable up to half of its number, an unbounded one is not; factors are medians of bar over "
-        f"error: {'; '.join(said)}. Classes where coverage fails: {', '.join(missed) or 'none'}"
+        "95 % error bars of single grids against far finer grids of the same solver, on random scenes: "
+        "share of usable bars that hold, share that is usable (at most half of the number, so bounded), "
+        f"median of bar over error: {'; '.join(said)}. "
+        f"Classes where coverage fails: {', '.join(missed) or 'none'}"
     ]
 
 

@@ -15,7 +15,7 @@ _SYMBOLS = (
     (re.compile(r"\btau\b"), "τ"),
     (re.compile(r"\bbeta\b"), "β"),
     (re.compile(r"\bpsi\b"), "ψ"),
-    (re.compile(r"(?<=[\d ])um\b"), "µm"),
+    (re.compile(r"(?<=[\d (])u(?=[mN]\b)"), "µ"),
     (re.compile(r"\bmm\^2"), "mm²"),
     (re.compile(r"\+-"), "±"),
     (re.compile(r"(?<=[ (])>="), "≥"),

@@ -10,11 +10,10 @@ from matplotlib.figure import Figure as Canvas
 
 from reports.drawing import INK, Data, Figure, look
 from reports.exhibit import Column, Document, Exhibit, table
-from reports.text import decimals
+from reports.text import decimals, interval, symbols
 
 COLUMNS: dict[str, Column] = {
-    "D, measured": lambda row: _rounded(row, "measured"),
-    "U_D": lambda row: _rounded(row, "measured_half_width"),
+    "D, measured": lambda row: interval(row["measured"], row["measured_half_width"]),
     "S, predicted": lambda row: _rounded(row, "predicted"),
     "U_num": "{numerical:.2g}",
     "U_input": "{input:.2g}",
@@ -108,7 +107,14 @@ def _figure(one: dict[str, Any]) -> Figure:
             axes.errorbar(places + shift, data[number] / scale, data[half] / abs(scale), **style)
         axes.axhline(1.0, color=INK, linestyle=":", linewidth=1)
         axes.set(xlabel=one["over"], ylabel="number / measured number", xlim=(-0.5, len(places) - 0.5))
-        axes.set_xticks(places, data["at"])
+        texts = [isinstance(p["at"], str) for p in one["points"]]
+        mixed = len(set(texts)) > 1  # loads, and a ratio of two numbers
+        for place in places[texts] if mixed else ():
+            axes.axvline(place - 0.5, color=INK, linewidth=1)
+        ticks = [
+            f"ratio,\n{at}" if mixed and text else at for at, text in zip(data["at"], texts, strict=True)
+        ]
+        axes.set_xticks(places, [symbols(tick) for tick in ticks])
         axes.legend()
 
     needs = ("at", "measured", "measured_half_width", "predicted", "uncertainty")

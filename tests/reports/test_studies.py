@@ -130,8 +130,8 @@ ROWS: list[tuple[str, int, list[Any]]] = [
      [("peak", "Peak", "pass, 0.5", "fail, 3"), ("order", "Order", "fail, 2", "pass, 0.25"),
       ("shear", "Shear", "not applicable", "error")]),
     ("experiments", 0,
-     [(0.5, "40.0", "2.0", "41.2", "0.01", "3", "+1.2", "3.6", True),
-      ("r", "40.0", "2.0", "99.0", "0.01", "3", "+59.0", "3.6", False)]),
+     [(0.5, "40.0 ± 2.0", "41.2", "0.01", "3", "+1.2", "3.6", True),
+      ("r", "40.0 ± 2.0", "99.0", "0.01", "3", "+59.0", "3.6", False)]),
     ("extremes", 0, [("load", 5, 3, 1, 1, 0, 3, 7), ("scale", 1, 0, 0, 0, 1, None, None)]),
     ("extremes", 3, [("N", 6.5, "sum", "it is this code's form")]),
     ("extremes", 4, [("tau", "none", "one", "several", 7)]),
@@ -187,7 +187,7 @@ def test_results_of_few_digits_and_second_solves_are_reported_apart() -> None:
     judges = [("Hertz", 3.1), ("Hertz", 12.0), ("the scaling law", 17.0), ("the dense solver", 0.05)]
     states = [{"verdict": "right", "oracle": oracle, "digits": digits} for oracle, digits in judges]
     said = sentence({"states": states, "counts": {"wrong": 0, "crash": 0, "honest failure": 0}})
-    assert "2 right to 6 digits or more and 2 to fewer (1 judged by the dense solver, from 0.05" in said
+    assert "2 right to 6 digits and 2 to fewer (1 judged by the dense solver, from 0.05" in said
     assert "1 judged by Hertz, from 3.1 digits); 2 of the right ones are judged by a second solve" in said
 
 

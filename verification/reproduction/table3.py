@@ -34,8 +34,12 @@ class Cell:
     @property
     def within(self) -> bool:
         """True if the deviation is within u, 95 %: the sampling of two such ensembles, and half a digit."""
-        u = math.hypot(math.sqrt(2) * self.ours.half_width, half_digit(self.printed))
-        return abs(self.ours.mean - self.printed) <= u
+        return abs(self.ours.mean - self.printed) <= self.uncertainty
+
+    @property
+    def uncertainty(self) -> float:
+        """u, 95 %."""
+        return math.hypot(math.sqrt(2) * self.ours.half_width, half_digit(self.printed))
 
 
 def half_digit(printed: float) -> float:
@@ -76,6 +80,7 @@ def series(table: Sequence[Cell]) -> dict[str, list[float]]:
         "printed": [cell.printed for cell in table],
         "ours": [cell.ours.mean for cell in table],
         "half width 95 %": [cell.ours.half_width for cell in table],
+        "u 95 %": [cell.uncertainty for cell in table],
         "realisations": [cell.ours.n for cell in table],
         "deviation": [cell.deviation for cell in table],
     }
