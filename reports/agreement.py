@@ -185,7 +185,7 @@ def verdict_of(group: Sequence[Number]) -> str:
 
 
 def printed(found: Iterable[Number]) -> dict[tuple[str, ...], bool]:
-    """Whether each printed number agrees within u, by quantity and place; readings count as one."""
+    """Return whether each printed number agrees within u, by quantity and place; readings are one number."""
     agree: dict[tuple[str, ...], bool] = {}
     for n in found:
         key = (n.quantity,) if n.reading else (n.part, n.quantity, n.label)

@@ -30,7 +30,7 @@ def _table3(canvas: Canvas, data: Data) -> None:
     axes = canvas.add_subplot()
     mesh, rms = _values(data, "mesh"), _values(data, "sigma_e (um)")
     ratio = _values(data, "ours") / _values(data, "printed")
-    u = data.get("u 95 %") or np.sqrt(2) * _values(data, "half width 95 %")  # of older files: sampling alone
+    u = data.get("u 95 %") or np.sqrt(2) * _values(data, "half width 95 %")  # older files: no rounding
     half = np.array(u, dtype=float) / _values(data, "printed")
     for k, sigma in enumerate(np.unique(rms)):
         here = rms == sigma

@@ -52,7 +52,7 @@ FEW = 6
 
 
 def sentence(document: Document) -> str:
-    """What the first page states: verdicts, results of few digits, and judges that are this code."""
+    """Return verdicts, results of few digits, and judges that are this code, for the first page."""
     rows, counts = document["states"], document["counts"]
     right = [row for row in rows if row["verdict"] == "right"]
     few = [row for row in right if row["digits"] < FEW]

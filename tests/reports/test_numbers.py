@@ -173,8 +173,8 @@ def test_the_first_page_by_hand() -> None:
     assert found.quantities == [("μ, Table 3", 1, "1.100", "", 0), ("A, Table 3", 1, "1.001", "", 1)]
     bars, extremes = found.trust
     for text in (
-        "corrected μ in 90 % of the 50 % of 300 scenes where it is usable (1.2 times the error)",
-        "p_max in 92 % of the 50 % of 300 scenes where it is usable (3.2 times the error)",
+        "corrected μ 90 %, 50 %, 1.2; ",
+        "p_max 92 %, 50 %, 3.2; ",
         "Classes where coverage fails: p_max of flat (92 %)",
     ):
         assert text in bars

@@ -115,7 +115,7 @@ def agreement(rms: float, tier: str) -> Measured:
     Claim: Fig. 6({panel}): good agreement with Greenwood and Tripp at sigma_e = {um:g} um
     Source: paper Fig. 6; Greenwood and Tripp 1967; Johnson 1985, section 13.5
     Tolerance: rms difference from Greenwood and Tripp, by area, over that of Hertz' pressure from theirs, the
-    effect of roughness: 1 for a solver without roughness, 0 for theirs. Theirs has the summits of Eq. (9),
+    effect of roughness: 1 for a solver without roughness, 0 for theirs. Theirs has the peaks of Eq. (9),
     which the caption's curve has not: at the least roughness, (a), ours is nearer to Hertz. Sampling leaves
     0.06 to 0.13 with 75 realisations and up to 0.9 with 4, so that the quick tier bounds (b) and (c) by 0.95
     only; with 75 (c) is bounded by 0.3, as half of Greenwood and Tripp's pressure is 0.37 away
@@ -129,7 +129,7 @@ def agreement(rms: float, tier: str) -> Measured:
     sentence = (
         f"sigma_e = {rms * 1e6:.3g} um: rms difference {found.misfit(found.textbook):.3f} of Hertz' peak "
         f"from the textbook's curve (mu = 4, the caption's alpha), {misfit:.3f} from the model with the "
-        f"summits that these surfaces have, {found.misfit(found.hertz):.3f} from Hertz, and sampling alone "
+        f"peaks that these surfaces have, {found.misfit(found.hertz):.3f} from Hertz, and sampling alone "
         f"makes {found.noise:.3f}; roughness moves the model by {smooth:.3f}; over the inner half of the "
         "Hertz circle "
         f"{ours:.3f} of Hertz' load, Greenwood-Tripp {theirs:.3f}; {found.outside.mean():.1%} of the "
