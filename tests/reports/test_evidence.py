@@ -152,12 +152,18 @@ def test_a_file_has_the_date_and_the_commit_of_its_newest_run() -> None:
     run, old, other = (dated(f"2001-01-0{day}", case(f"{day}/1")) for day in (1, 2, 3))
     other["provenance"]["dirty"] = True
     made = [{"provenance": {"date": f"2001-02-0{day}", "commit": None}} for day in (2, 3, 1)]
-    rows = revisions_of(gathered(run, {"old": old, "other": other, "study": {"runs": made, "x": [1]}}))
+    rows = revisions_of(
+        gathered(
+            run,
+            {"old": old, "other": other, "study": {"runs": made, "x": [1]}, "table": {"date": "2001-03-01"}},
+        )
+    )
     assert [(name, date) for name, date, _ in rows] == [
         ("this run", "2001-01-01"),
         ("old.json", "2001-01-02"),
         ("other.json", "2001-01-03"),
         ("study.json", "2001-02-03"),
+        ("table.json", "2001-03-01"),
     ]
     assert rows[2][2].endswith(" and uncommitted changes")
     assert rows[3][2] == "n/a"
