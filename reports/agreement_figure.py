@@ -36,7 +36,7 @@ def _draw(canvas: Canvas, data: Data) -> None:
             axes.errorbar(ratio[k], y, xerr=min(half[k], 0.99 * ratio[k]), capsize=2, markersize=4, **style)
     axes.axvline(1.0, color=INK, linestyle="--", linewidth=1)
     axes.set_xscale("log")
-    axes.set_xlim(1 / WIDEST, WIDEST)
+    axes.set_xlim(0.9 / WIDEST, 1.05 * WIDEST)
     label_ticks(axes, TICKS)
     axes.set_yticks(range(len(quantities)), quantities)
     axes.set_ylim(len(quantities) - 0.5, -0.5)
@@ -50,7 +50,7 @@ AGREEMENT = Figure(
     "*",
     ("quantity", "label", "printed", "computed", "uncertainty 95 %", "computed / printed"),
     _draw,
-    "Every number that the paper prints against ours, by quantity (Table 3: fine mesh). Bars are u at 95 %: "
+    "Printed numbers against ours, by quantity (Table 3: fine mesh). Bars are u at 95 %: "
     "the sampling of random surfaces, the paper's and ours, and the rounding of the printed number.",
     (7.4, 4.6),
 )

@@ -11,16 +11,19 @@ from reports.reproduction_figures import REPRODUCTION
 from reports.yield_figures import BEYOND_YIELD
 
 FIG12 = {
-    "crest: finite elements (%)": "crest, finite elements",
     "crest: first order (%)": "crest, first order",
-    "crest: the paper's superposition (%)": "crest, the paper's superposition",
-    "flank: finite elements (%)": "flank, finite elements",
     "flank: first order (%)": "flank, first order",
+    "crest: the paper's superposition (%)": "crest, the paper's superposition",
 }
 FIG13 = {
-    f"{slope} degrees: {theory} (%)": f"{slope} degrees, {theory}"
-    for slope in ("2.5", "6.5", "15")
-    for theory in ("wedge theory", "finite elements")
+    f"{slope} degrees: wedge theory (%)": f"{slope} degrees, wedge theory" for slope in ("2.5", "6.5", "15")
+}
+FINITE_ELEMENTS = {  # as points beside the theories that they nearly coincide with
+    "fig12": {f"{place}: finite elements (%)": f"{place}, finite elements" for place in ("crest", "flank")},
+    "fig13": {
+        key.replace("wedge theory", "finite elements"): f"{text.partition(',')[0]}, finite elements"
+        for key, text in FIG13.items()
+    },
 }
 WITH_DIFFERENCE = (6.4, 4.8)  # inches: a second panel for the difference from the exact curve
 
@@ -33,7 +36,7 @@ APPENDIX_A = (
             series,
             xlabel="x / a",
             ylabel="change of the coefficient (%)",
-            marker=True,
+            points=FINITE_ELEMENTS[name],
         )
         for name, series, caption in (
             ("fig12", FIG12, "Strip theory and finite elements at 6.5 degrees, from the strip's centre."),

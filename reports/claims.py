@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import re
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from importlib import resources
+from itertools import pairwise
 from typing import Any
 
-from reports.agreement import Number, as_cases, numbers
-from reports.findings import by_claim, filled
+from reports.agreement import Number, as_cases, by_quantity, numbers, verdict_of
+from reports.findings import MISSING, by_claim, filled, note
 from reports.results import Case, worst
 
 NOT_ESTABLISHED = "not established"
@@ -26,6 +26,7 @@ VERDICTS = (
     "schematic",
 )
 """From the least to the most favourable; the last three judge nothing."""
+UNJUDGED = VERDICTS[-3:]
 
 
 @dataclass(frozen=True)
@@ -34,8 +35,10 @@ class Claim:
 
     label: str
     quote: str
-    verdict: str
     evidence: Sequence[str]
+    verdict: str = ""
+    numbers: Sequence[str] = ()
+    holds: Sequence[str] = ()
     corrected: Sequence[str] = ()
     finding: str = ""
     own: bool = False
@@ -96,55 +99,74 @@ def judged(cases: Iterable[Case], errata: Iterable[Mapping[str, Any]]) -> list[J
     """Return every claim with its evidence; a long case that passed stands for the quick one of its name."""
     known = longest(cases)
     found = by_claim(known)
-    found |= as_cases(numbers(found))
+    groups = by_quantity(numbers(found))
+    found |= as_cases(groups)
     corrections = {erratum["equation"]: erratum for erratum in errata}
-    return [_judged(claim, known, found, corrections) for claim in paper()]
+    return [_judged(claim, known, found, groups, corrections) for claim in paper()]
 
 
 def _judged(
     claim: Claim,
     known: Sequence[Case],
     by_name: Mapping[str, Case],
+    groups: Mapping[str, Sequence[Number]],
     corrections: Mapping[str, Mapping[str, Any]],
 ) -> Judged:
     found = [c for c in known if any(fnmatchcase(c["id"], pattern) for pattern in claim.evidence)]
-    said = [c for c in found if recorded(c) is not None]
-    first = note(said[0]) if said else ""
-    finding = filled(claim.finding, by_name) if claim.finding else first
+    said = next((note(case) for case in found if recorded(case) is not None), "")
+    finding = filled(claim.finding, by_name) or said
     return Judged(
         claim,
-        verdict(claim, found),
-        finding,
+        _verdict(claim, found, by_name, groups),
+        said if MISSING in finding and said else finding,
         found,
         [corrections[name] for name in claim.corrected if name in corrections],
     )
 
 
-def verdict(claim: Claim, cases: Sequence[Case]) -> str:
-    """The claim's verdict, or a less favourable one that a case records; none without evidence that
-    passed."""
+def _verdict(
+    claim: Claim, cases: Sequence[Case], by_name: Mapping[str, Case], groups: Mapping[str, Sequence[Number]]
+) -> str:
+    """The least favourable of the claim's own verdict and those that its numbers, its comparisons and its
+    cases give; none without evidence that passed.
+    """
     if claim.evidence and (not cases or worst(list(cases)) != "pass"):
         return NOT_ESTABLISHED
-    if claim.own or claim.verdict in VERDICTS[-3:]:
+    if claim.verdict in UNJUDGED:
         return claim.verdict
-    said = [v for v in map(recorded, cases) if v is not None]
-    return min((claim.verdict, *said), key=VERDICTS.index)
+    given = [claim.verdict] if claim.verdict else []
+    given += [verdict_of(groups.get(quantity, ())) for quantity in claim.numbers]
+    given += [ascending(filled(text, by_name)) for text in claim.holds]
+    if not claim.own:
+        given += [v for v in map(recorded, cases) if v is not None]
+    return min(given, key=VERDICTS.index, default=NOT_ESTABLISHED)
+
+
+def ascending(text: str) -> str:
+    """The verdict on "a < b < c", with its numbers in place.
+
+    >>> ascending("1.5 < 2 < 3"), ascending("2 < 1"), ascending("1 < n/a")
+    ('confirmed', 'not confirmed', 'not established')
+    """
+    values = text.split(" < ")
+    if MISSING in values:
+        return NOT_ESTABLISHED
+    return "confirmed" if all(float(a) < float(b) for a, b in pairwise(values)) else "not confirmed"
+
+
+def statements(claims: Iterable[Judged]) -> dict[str, list[Judged]]:
+    """The claims that each case is evidence of, by its id: the only verdicts on the paper that it has."""
+    found: dict[str, list[Judged]] = {}
+    for row in claims:
+        for case in row.cases:
+            found.setdefault(case["id"], []).append(row)
+    return found
 
 
 def recorded(case: Case) -> str | None:
     """Return the verdict on the paper that a case records; None where it judges our code alone."""
     text = case["data"].get("verdict")
     return text if text in VERDICTS else None
-
-
-def note(case: Case) -> str:
-    """The first statement of a case's note, without the verdict.
-
-    >>> note({"data": {"verdict": "confirmed"}, "note": "confirmed: 1 (of 2; 3) here; more. And more"})
-    '1 (of 2; 3) here'
-    """
-    text: str = case["note"].removeprefix(case["data"]["verdict"]).removeprefix(":").strip()
-    return re.split(r"(?:;|\.) (?![^(]*\))", text)[0]
 
 
 @dataclass(frozen=True)
@@ -158,10 +180,16 @@ class Shown:
 
 
 def shown(claims: Sequence[Judged], numbers: Sequence[Number], cases: Sequence[Case]) -> list[Shown]:
-    """Return the parts that have a claim, a number or a figure; long cases that passed replace quick ones."""
+    """Return the parts that have a claim, a number or a figure; of a pattern the long
+    cases that passed stand for quick ones."""
     known, found = longest(cases), []
     for part in parts():
-        drawn = [case for pattern in part.figures for case in known if fnmatchcase(case["id"], pattern)]
+        drawn = [
+            case
+            for pattern in part.figures
+            for case in (known if "*" in pattern else cases)
+            if fnmatchcase(case["id"], pattern)
+        ]
         mine = [claim for claim in claims if claim.claim.part == part.name and claim.cases]
         compared = [n for n in numbers if n.part == part.name]
         if mine or compared or drawn:

@@ -121,6 +121,7 @@ def curves(
     xlabel: str,
     ylabel: str,
     exact: Mapping[str, str] | None = None,
+    points: Mapping[str, str] | None = None,
     band: tuple[str, str] | None = None,
     log: str = "",
     marker: bool = False,
@@ -128,14 +129,15 @@ def curves(
     difference: str = "",
     size: tuple[float, float] = SIZE,
 ) -> Figure:
-    """Return the figure of series (key to legend text) over `x`, and those of `exact` dashed.
+    """Return the figure of series (key to legend text) over `x`, and those of `exact` dashed; `points` are
+    open markers in the colours of the series.
 
     `band` is the key and the legend text of the first series' half width, drawn around it; `log` names the
     logarithmic axes, "", "x", "y" or "xy"; `x` is multiplied by `per_x`. `difference` labels a second panel,
     of the first series less the first exact one: curves that coincide show nothing else. The figure needs all
     series that it draws.
     """
-    exact = exact or {}
+    exact, points = exact or {}, points or {}
 
     def draw(canvas: Canvas, data: Data) -> None:
         over, middle = per_x * _numbers(data[x]), _numbers(data[next(iter(series))])
@@ -152,6 +154,8 @@ def curves(
         for k, (key, label) in enumerate(series.items()):
             style = look(k) if marker else {"color": look(k)["color"]}
             axes.plot(over, _numbers(data[key]), label=label, **style)
+        for k, (key, label) in enumerate(points.items()):
+            axes.plot(over, _numbers(data[key]), label=label, **look(k), linestyle="", markerfacecolor="none")
         for dashes, (key, label) in zip(("--", ":", "-."), exact.items(), strict=False):
             axes.plot(over, _numbers(data[key]), dashes, color=INK, label=label)
         if band is not None:
@@ -164,7 +168,7 @@ def curves(
             _few_ticks(axes, over)
         axes.legend()
 
-    needs = dict.fromkeys((x, *series, *exact, *(band or ())[:1]))
+    needs = dict.fromkeys((x, *series, *points, *exact, *(band or ())[:1]))
     return Figure(cases, tuple(needs), draw, caption, size)
 
 

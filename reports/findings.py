@@ -1,7 +1,8 @@
 """Sentences with numbers from cases: ``{case | key | format}`` in a text becomes the case's number.
 
 A key is "value", "error", or a name in the case's data; ``#`` goes one step into a list or table ("margin#2",
-"numbers#mu") or takes "max", the largest magnitude of a list.
+"numbers#mu") or takes "max", the largest magnitude of a list. "a + 2 b#max" is the largest upper end of the
+intervals of means "a" with standard errors "b".
 """
 
 from __future__ import annotations
@@ -37,12 +38,29 @@ def filled(text: str, cases: Mapping[str, Case]) -> str:
 
     def put(match: re.Match[str]) -> str:
         case, key, form = (part.strip() for part in match.groups())
+        if key == "note" and case in cases:
+            return note(cases[case])
         found = number(cases[case], key) if case in cases else None
         if found is None:
             return MISSING
         return f"{round(found):d}" if form == "d" else format(found, form)
 
     return _FIELD.sub(put, text)
+
+
+def note(case: Case) -> str:
+    """The first statement of a case's note.
+
+    >>> note({"data": {}, "note": "1 (of 2; 3) by Eq. (1); more. And more"})
+    '1 (of 2; 3) by Eq. (1)'
+    """
+    return re.split(r"(?:;|(?<!Eq)(?<!Eqs)(?<!Fig)\.) (?![^(]*\))", plain_note(case))[0]
+
+
+def plain_note(case: Case) -> str:
+    """A case's note without the verdict with which older result files begin it."""
+    text: str = case["note"]
+    return text.removeprefix(f"{case['data'].get('verdict')}: ")
 
 
 def fields(text: str) -> list[tuple[str, str]]:
@@ -56,6 +74,9 @@ def number(case: Case, key: str) -> float | None:
         found: Any = case[key]
     elif key in ("#below 2", "#readings"):
         found = _readings(case["data"], below=key == "#below 2")
+    elif " + 2 " in key:
+        mean, error = (case["data"].get(name, ()) for name in key.removesuffix("#max").split(" + 2 "))
+        found = max((m + 2 * e for m, e in zip(mean, error, strict=True)), default=None)
     else:
         found = _step_by_step(case["data"], key.split("#"))
     return float(found) if isinstance(found, int | float) and not isinstance(found, bool) else None

@@ -12,16 +12,16 @@ from reports import agreement, solver_under_test
 from reports.agreement_figure import AGREEMENT
 from reports.catalogue import figures_of
 from reports.chapters import all_chapters, exhibits_of, subjects_of
-from reports.claims import judged, of_the_conversion, shown
+from reports.claims import judged, of_the_conversion, shown, statements
 from reports.comparison import compared
 from reports.drawing import Figure
 from reports.evidence import Evidence, gathered, groups
-from reports.findings import by_claim
+from reports.findings import by_claim, plain_note
 from reports.front_page import front_page
 from reports.pictures import Album
-from reports.results import Case, CaseDataError, shaped
+from reports.results import Case, CaseDataError, shaped, shown_status
 from reports.revisions import revisions_of
-from reports.text import cell, interval, judgement, number, symbols
+from reports.text import cell, decimals, interval, judgement, number, quoted, symbols
 
 
 def render(
@@ -56,10 +56,11 @@ def render(
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters.update(number=number, anchor=anchor, symbols=symbols, label=label)
+    environment.filters.update(number=number, anchor=anchor, symbols=symbols, quoted=quoted, label=label)
+    environment.filters.update(plain_note=plain_note, status=shown_status)
     template = environment.get_template("solver.html" if evidence.solver is not None else "report.html")
     with shaped("a study"):  # its file is checked by being shown
-        own = {} if evidence.solver is not None else _own(evidence, one_picture)
+        own = {"statements": {}} if evidence.solver is not None else _own(evidence, one_picture)
         page = template.render(
             run=evidence.run,
             evidence=evidence,
@@ -70,6 +71,7 @@ def render(
             changes=None if against is None else compared(against, results),
             judgement=judgement,
             interval=interval,
+            decimals=decimals,
             facts=facts,
             rerun=lambda case: rerun(case, evidence),
             pictures=case_pictures,
@@ -88,6 +90,7 @@ def _own(evidence: Evidence, picture: Any) -> dict[str, Any]:
     return {
         "front": front_page(evidence, claims, numbers),
         "claims": claims,
+        "statements": statements(claims),
         "of_the_conversion": of_the_conversion(),
         "numbers": numbers,
         "scatter": picture(AGREEMENT, agreement.series(agreement.compared(numbers))) if numbers else None,
@@ -128,6 +131,8 @@ def facts(data: Mapping[str, Any], most: int = 12) -> list[tuple[str, str]]:
     """
     found = []
     for name, value in data.items():
+        if name == "verdict":  # on the statements that the check is evidence of: the table of claims has it
+            continue
         if isinstance(value, Mapping) and 0 < len(value) <= most and all(map(_single, value.values())):
             found.append((name, ", ".join(f"{key}: {_text(entry)}" for key, entry in value.items())))
         elif _single(value):

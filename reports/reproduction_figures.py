@@ -26,11 +26,12 @@ def _values(data: Data, name: str) -> np.ndarray[tuple[int, ...], np.dtype[np.fl
 
 
 def _table3(canvas: Canvas, data: Data) -> None:
-    """Ours over printed, mesh by mesh, with 95 % intervals."""
+    """Ours over printed, mesh by mesh, with u."""
     axes = canvas.add_subplot()
     mesh, rms = _values(data, "mesh"), _values(data, "sigma_e (um)")
     ratio = _values(data, "ours") / _values(data, "printed")
-    half = _values(data, "half width 95 %") / _values(data, "printed")
+    u = data.get("u 95 %") or np.sqrt(2) * _values(data, "half width 95 %")  # older files: no rounding
+    half = np.array(u, dtype=float) / _values(data, "printed")
     for k, sigma in enumerate(np.unique(rms)):
         here = rms == sigma
         x = np.log2(mesh[here]) + 0.06 * (k - 1.5)
@@ -92,8 +93,15 @@ def _fig6d(canvas: Canvas, data: Data) -> None:
     axes.plot(side / 2 + radius * np.cos(angle), side / 2 + radius * np.sin(angle), DASHED, color=COLOURS[1])
 
 
+def _fig7_difference(data: Data) -> dict[str, list[float]]:
+    """What friction changes, which no line's width shows."""
+    less = _values(data, "flat deformed (um)") - _values(data, "flat deformed, frictionless (um)")
+    return {"with less without friction (nm)": list(1e3 * less)}
+
+
 def _fig7(canvas: Canvas, data: Data) -> None:
-    before, contact = canvas.subplots(1, 2)
+    panels = canvas.subplot_mosaic([["a", "b"], ["a", "c"]], height_ratios=(3, 1), sharex=True)
+    before, contact, below = (panels[name] for name in "abc")
     x = _values(data, "x (mm)")
     for axes, state in ((before, "before"), (contact, "deformed")):
         axes.plot(x, data[f"ball {state} (um)"], color=COLOURS[1], label="ball")
@@ -103,11 +111,13 @@ def _fig7(canvas: Canvas, data: Data) -> None:
         x, data["flat deformed, frictionless (um)"], DOTTED, color=COLOURS[2], label="without friction"
     )
     contact.plot(x, data["mean plane (um)"], DASHED, color=INK, label="deformed mean plane")
-    flat = _values(data, "flat before (um)")
+    below.plot(x, data["with less without friction (nm)"], color=COLOURS[2])
     for axes, title in ((before, "(a) before contact"), (contact, "(b) in contact")):
-        axes.set_ylim(1.6 * flat.min(), 3.0 * flat.max())
-        axes.set(xlabel="x from the centre (mm)", ylabel="height (µm)", title=title)
+        axes.set(ylabel="height (µm)", title=title)
         axes.legend()
+    below.set_ylabel("with less without\nfriction (nm)")
+    for axes in (before, below):
+        axes.set_xlabel("x from the centre (mm)")
 
 
 def _fig8(canvas: Canvas, data: Data) -> None:
@@ -220,7 +230,7 @@ REPRODUCTION = (
         "reproduction/table3-[amp]*",
         ("sigma_e (um)", "mesh", "printed", "ours", "half width 95 %"),
         _table3,
-        "{title}: this code over the printed value, with 95 % intervals.",
+        "{title}: this code over the printed value; bars are u (95 %), beyond which a difference counts.",
     ),
     Figure(
         "reproduction/fig4-correlation*",
@@ -245,7 +255,8 @@ REPRODUCTION = (
             f"reproduction/fig6{panel}*",
             ("r/a0", "p/p0", "standard error", "Hertz p/p0", "Greenwood-Tripp p/p0", "mu = 4 p/p0"),
             _fig6,
-            f"Fig. 6({panel}): effective pressure of the frictionless rough contact, sigma_e = {rms} um.",
+            f"Fig. 6({panel}): effective pressure of the frictionless rough contact, sigma_e = {rms} um; the "
+            "innermost rings have few elements, and wide intervals.",
         )
         for panel, rms in (("a", "0.068"), ("b", "0.511"), ("c", "2.69"))
     ),
@@ -260,8 +271,10 @@ REPRODUCTION = (
         "reproduction/fig7*",
         ("x (mm)", "flat before (um)", "flat deformed (um)", "flat deformed, frictionless (um)"),
         _fig7,
-        "Fig. 7: section of ball and half-space before contact and in contact.",
-        (8.6, 3.8),
+        "Fig. 7: section of ball and half-space before contact and in contact, and by how much friction "
+        "moves the half-space.",
+        (8.6, 5.6),
+        _fig7_difference,
     ),
     Figure(
         "reproduction/fig8-*",

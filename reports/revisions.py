@@ -21,14 +21,16 @@ def revisions_of(evidence: Evidence) -> list[tuple[str, str, str]]:
 
 
 def newest(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
-    """Provenance of a study's document, or of the newest run in its list."""
+    """Provenance of a study's document, or of its newest run; else the document, if it is dated."""
     listed = [entry for value in document.values() if isinstance(value, list) for entry in value]
     records = [
         item["provenance"]
         for item in (document, *listed)
         if isinstance(item, Mapping) and "provenance" in item
     ]
-    return max(records, key=lambda record: str(record["date"]), default=None)
+    return max(
+        records, key=lambda record: str(record["date"]), default=document if "date" in document else None
+    )
 
 
 def _made(provenance: Mapping[str, Any] | None) -> tuple[str, str]:

@@ -15,12 +15,21 @@ _SYMBOLS = (
     (re.compile(r"\btau\b"), "τ"),
     (re.compile(r"\bbeta\b"), "β"),
     (re.compile(r"\bpsi\b"), "ψ"),
-    (re.compile(r"(?<=[\d ])um\b"), "µm"),
+    (re.compile(r"(?<=[\d (])u(?=[mN]\b)"), "µ"),
     (re.compile(r"\bmm\^2"), "mm²"),
     (re.compile(r"\+-"), "±"),
     (re.compile(r"(?<=[ (])>="), "≥"),
     (re.compile(r"(?<=[ (])<="), "≤"),
 )
+
+
+def quoted(text: str) -> str:
+    """Return a text of the paper with symbols, and its f_max as it is printed.
+
+    >>> quoted("mu and f_{max} at sigma_e = 0.5 um")
+    'μ and f_max at σ_e = 0.5 µm'
+    """
+    return symbols(text.replace("f_{max}", "f_max").replace("f_max", "f_\0max")).replace("f_\0max", "f_max")
 
 
 def symbols(text: str) -> str:
@@ -44,15 +53,24 @@ def number(value: float | None, digits: int = 4) -> str:
 
 
 def interval(value: float, half_width: float) -> str:
-    """The value with the digits that its interval leaves; four where there is none.
+    """The value with the decimals of its interval's two digits; four digits where there is none.
 
     >>> interval(0.10729513, 0.00042692), interval(12.345, 3.0), interval(0.21550513, 0.0)
-    ('0.1073 ± 0.0004', '12 ± 3', '0.2155')
+    ('0.10730 ± 0.00043', '12.3 ± 3.0', '0.2155')
     """
     if half_width == 0:
         return f"{value:.4g}"
-    decimals = max(0, -math.floor(math.log10(half_width)))
-    return f"{value:.{decimals}f} ± {half_width:.{decimals}f}"
+    places = decimals(half_width)
+    return f"{value:.{places}f} ± {half_width:.{places}f}"
+
+
+def decimals(uncertainty: float) -> int:
+    """Decimals of an uncertainty's first two digits, by which numbers beside it are rounded.
+
+    >>> decimals(0.137), decimals(25.4)
+    (2, 0)
+    """
+    return max(0, 1 - math.floor(math.log10(uncertainty)))
 
 
 def unit_of(case: Case) -> tuple[str, float]:

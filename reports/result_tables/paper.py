@@ -10,7 +10,7 @@ from reports.evidence import Evidence
 from reports.exhibit import Column
 from reports.result_tables.markdown import RUN, Row, link, listing, origin, section
 from reports.results import Case
-from reports.text import interval, symbols, unit_of
+from reports.text import interval, quoted, symbols, unit_of
 
 
 def table_3(reproduction: Mapping[str, Any]) -> str:
@@ -65,7 +65,7 @@ def hertz(run: Mapping[str, Any]) -> str:
 CLAIMS: dict[str, Column] = {
     "verdict": lambda item: item.verdict,
     "where": lambda item: item.claim.label,
-    "as printed": lambda item: f"“{symbols(item.claim.quote)}”",
+    "as printed": lambda item: f"“{quoted(item.claim.quote)}”",
     "found": lambda item: symbols(item.finding),
     "evidence": lambda item: ", ".join(f"`{case['id']}`" for case in item.cases[:2]),
     "file": lambda item: origin(item.cases[0]),
@@ -94,7 +94,7 @@ def errata(evidence: Evidence) -> str:
     cases = {case["id"]: case for case in evidence.cases}
     columns: dict[str, Column] = {
         "equation": "equation",
-        "printed": lambda erratum: symbols(erratum["printed"]),
+        "printed": lambda erratum: quoted(erratum["printed"]),
         "corrected": lambda erratum: symbols(erratum["corrected"]),
         "measure": lambda erratum: symbols(erratum["measure"]),
         "as printed": "{printed_error:.2g}",

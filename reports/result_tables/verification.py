@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from reports.evidence import Evidence
 from reports.result_tables.markdown import Row, link, section
-from reports.results import FORMAT, STATUSES
+from reports.results import FORMAT, RECORDED, STATUSES, Case, shown_status
+
+COUNTED = (*STATUSES[:1], RECORDED, *STATUSES[1:])
 
 
 def checks(documents: Mapping[str, Any], evidence: Evidence) -> str:
@@ -19,13 +21,19 @@ def checks(documents: Mapping[str, Any], evidence: Evidence) -> str:
             selected = (
                 ", ".join(f"`{pattern}`" for pattern in run["only"]) or f"all of the {run['tier']} tier"
             )
-            counts = [run["counts"][status] for status in STATUSES]
+            counts = _counts(run["cases"])
             rows.append((link(name), selected, *counts, made["date"][:10], f"`{made['commit'][:12]}`"))
-    total = [sum(case["status"] == status for case in evidence.cases) for status in STATUSES]
-    listed = ", ".join(f"{count} {status}" for count, status in zip(total, STATUSES, strict=True))
+    counted = zip(_counts(evidence.cases), COUNTED, strict=True)
+    listed = ", ".join(f"{count} {status}" for count, status in counted)
     bad = [f"`{case['id']}` ({case['status']})" for case in evidence.cases if case["status"] != "pass"]
     text = f"{len(evidence.cases)} different checks: {listed}. Not passed: {', '.join(bad) or 'none'}."
-    return section("Checks", text, ("file", "checks", *STATUSES, "date", "commit"), rows)
+    text += " *Recorded*: within a tolerance set from the result, which guards against changes alone."
+    return section("Checks", text, ("file", "checks", *COUNTED, "date", "commit"), rows)
+
+
+def _counts(cases: Iterable[Case]) -> list[int]:
+    found = [shown_status(case) for case in cases]
+    return [found.count(status) for status in COUNTED]
 
 
 def studies(documents: Mapping[str, Any]) -> str:

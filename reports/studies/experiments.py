@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -9,17 +10,24 @@ from matplotlib.figure import Figure as Canvas
 
 from reports.drawing import INK, Data, Figure, look
 from reports.exhibit import Column, Document, Exhibit, table
-from reports.text import interval
+from reports.text import decimals, interval, symbols
 
 COLUMNS: dict[str, Column] = {
     "D, measured": lambda row: interval(row["measured"], row["measured_half_width"]),
-    "S, predicted": "{predicted:.4g}",
+    "S, predicted": lambda row: _rounded(row, "predicted"),
     "U_num": "{numerical:.2g}",
     "U_input": "{input:.2g}",
-    "E = S - D": "{error:+.2g}",
-    "U_val": "{uncertainty:.2g}",
+    "E = S - D": lambda row: _rounded(row, "error", "+"),
+    "U_val": lambda row: _rounded(row, "uncertainty"),
     "|E| <= U_val": "within",
 }
+
+
+def _rounded(row: Mapping[str, float], key: str, sign: str = "") -> str:
+    """A number with the decimals of U_val's two digits."""
+    return f"{row[key]:{sign}.{decimals(row['uncertainty'])}f}"
+
+
 INTRODUCTION = (
     "E is the predicted number S less the measured one D. U_val joins, in squares, the uncertainties of the "
     "solver, U_num, of the inputs, U_input, and of the measurement, U_D: half-widths at 95 %. Where a "
@@ -50,18 +58,22 @@ def sentences(document: Document) -> list[str]:
 
     >>> one = {"title": "Ball on film", "trend_only": True, "failure": "", "points": [{"within": True}] * 2}
     >>> sentences({"experiments": [one]})
-    ['1 experiments: ball on film', '2 of 2 points lie within U_val, 2 by trend alone', 'No failure']
+    ['1 experiments: ball on film', '2 of 2 points lie within U_val, 2 with ... experiment', 'No failure']
     """
     found = document["experiments"]
-    points = [(one["trend_only"], point["within"]) for one in found for point in one["points"]]
-    held = [trend for trend, within in points if within]
+    points = [(one, point["within"]) for one in found for point in one["points"]]
+    held = [one for one, within in points if within]
+    fitted = sum(one["trend_only"] for one in held)
+    failed = sum(bool(one["failure"]) and not one["trend_only"] for one in held)
+    kinds = [f"{fitted} with a parameter fitted to the same experiment"] if fitted else []
+    kinds += [f"{failed} in an experiment whose other points the model misses"] if failed else []
     titles = [one["title"][0].lower() + one["title"][1:] for one in found]
     failures = " and ".join(
         f"{title} ({one['failure']})" for title, one in zip(titles, found, strict=True) if one["failure"]
     )
     return [
         f"{len(found)} experiments: {', '.join(titles)}",
-        f"{len(held)} of {len(points)} points lie within U_val, {sum(held)} by trend alone",
+        ", ".join([f"{len(held)} of {len(points)} points lie within U_val", *kinds]),
         f"The model fails for {failures}" if failures else "No failure",
     ]
 
@@ -95,7 +107,14 @@ def _figure(one: dict[str, Any]) -> Figure:
             axes.errorbar(places + shift, data[number] / scale, data[half] / abs(scale), **style)
         axes.axhline(1.0, color=INK, linestyle=":", linewidth=1)
         axes.set(xlabel=one["over"], ylabel="number / measured number", xlim=(-0.5, len(places) - 0.5))
-        axes.set_xticks(places, data["at"])
+        texts = [isinstance(p["at"], str) for p in one["points"]]
+        mixed = len(set(texts)) > 1  # loads, and a ratio of two numbers
+        for place in places[texts] if mixed else ():
+            axes.axvline(place - 0.5, color=INK, linewidth=1)
+        ticks = [
+            f"ratio,\n{at}" if mixed and text else at for at, text in zip(data["at"], texts, strict=True)
+        ]
+        axes.set_xticks(places, [symbols(tick) for tick in ticks])
         axes.legend()
 
     needs = ("at", "measured", "measured_half_width", "predicted", "uncertainty")

@@ -45,6 +45,34 @@ LAWFUL: dict[str, Column] = {
 CONDITIONING = ("M", "condition", "CG iterations", "digits lost by a direct solve")
 
 
+SECOND_SOLVE = ("the scaling law", "the same heights without an offset", "the dense solver")
+"""Judges that are this code again."""
+FEW = 6
+"""Decimal digits below which a right result is reported apart: those of single precision."""
+
+
+def sentence(document: Document) -> str:
+    """Return verdicts, results of few digits, and judges that are this code, for the first page."""
+    rows, counts = document["states"], document["counts"]
+    right = [row for row in rows if row["verdict"] == "right"]
+    few = [row for row in right if row["digits"] < FEW]
+    worst: dict[str, float] = {}
+    for row in few:
+        worst[row["oracle"]] = min(row["digits"], worst.get(row["oracle"], FEW))
+    judges = ", ".join(
+        f"{sum(row['oracle'] == name for row in few)} judged by {name}, from {digits:.2g} digits"
+        for name, digits in sorted(worst.items(), key=lambda item: item[1])
+    )
+    again = sum(row["oracle"] in SECOND_SOLVE for row in right)
+    return (
+        f"{len(rows)} extreme inputs: {counts['wrong']} wrong by more than the input leaves open, "
+        f"{counts['crash']} crashes, {counts['honest failure']} with a status that says that they failed, "
+        f"{len(right) - len(few)} right to {FEW} digits and {len(few)} to fewer"
+        f"{f' ({judges})' if few else ''}; "
+        f"{again} of the right ones are judged by a second solve of this code"
+    )
+
+
 def build(document: Document) -> Exhibit:
     """Return the tables of the study, and a map of the digits that results keep."""
     rows, counts = document["states"], document["counts"]
@@ -53,8 +81,10 @@ def build(document: Document) -> Exhibit:
     return Exhibit(
         "Every axis to the point of failure",
         (
-            f"{len(rows)} states: {found}. Right: within its limit of an oracle that shares nothing with the "
-            "solver: the discrete problem in 34 digits, a scaling law, a closed form. Detected failure: "
+            f"{len(rows)} states: {found}. Right: within its limit of the judge that the table names: the "
+            "discrete problem in 34 digits, a closed form, or a second solve of this code (other units, no "
+            "offset, the dense solver). A limit is what the input leaves: heights with a large offset have "
+            "lost their digits, and finite elements have the digits of their mesh. Detected failure: "
             "refused, or a status that says so. Crash: an exception without a reason, or no end in the time "
             "allowed.",
             "Unit scaling by powers of two must change no bit, by powers of ten no more than 1e-12.",

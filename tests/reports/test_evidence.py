@@ -6,6 +6,7 @@ from fnmatch import fnmatchcase
 
 import pytest
 
+from reports.agreement import SINGLE, TABLE3
 from reports.claims import NOT_ESTABLISHED, VERDICTS, judged, paper, parts
 from reports.evidence import gathered, groups
 from reports.findings import fields
@@ -77,18 +78,30 @@ def test_the_least_favourable_verdict_counts_and_long_cases_replace_quick_ones()
     assert row.verdict == "not confirmed"
 
 
-def test_a_verdict_of_the_matrix_is_not_milder_than_its_cases() -> None:
+def test_numbers_beyond_u_and_comparisons_that_fail_are_not_confirmed() -> None:
+    slope = {"largest gradient (deg)": 8.4, "verdict": "confirmed"}
+    mean = {"mean pressure / H": [0.7, 0.6, 2.0], "verdict": "confirmed"}
+    cases = [case("reproduction/largest-slope", data=slope), case("reproduction/eq11", data=mean)]
+    rows = {row.claim.label: row for row in judged(cases, [])}
+    assert rows["Appendix A: 6.5 degrees"].verdict == "not confirmed"
+    assert rows["Section 8: mean pressure"].verdict == "not confirmed"
+
+
+def test_every_row_of_the_committed_results_has_a_verdict_and_a_finding() -> None:
     documents = read_results(ROOT / "reports/results")
     evidence = gathered(documents["quick"], {k: v for k, v in documents.items() if k != "quick"})
     for row in judged(evidence.cases, evidence.errata):
-        assert row.verdict == row.claim.verdict, row.claim.label
+        assert row.verdict == (row.claim.verdict or row.verdict), row.claim.label
+        assert row.claim.verdict == NOT_ESTABLISHED or row.verdict != NOT_ESTABLISHED, row.claim.label
         assert "n/a" not in row.finding, row.claim.label
         assert row.finding, row.claim.label
 
 
 def test_the_matrix_has_known_verdicts_and_parts_and_one_row_a_label() -> None:
     claims = paper()
-    assert {claim.verdict for claim in claims if claim.evidence} <= set(VERDICTS[1:])
+    assert {claim.verdict for claim in claims if claim.evidence} <= {"", *VERDICTS[1:]}
+    known = {row[1] for row in SINGLE} | {row[1] for row in TABLE3}
+    assert {quantity for claim in claims for quantity in claim.numbers} <= known
     assert {claim.part for claim in claims} <= {part.name for part in parts()} | {""}
     labels = [claim.label for claim in claims]
     assert len(labels) == len(set(labels))
@@ -139,12 +152,18 @@ def test_a_file_has_the_date_and_the_commit_of_its_newest_run() -> None:
     run, old, other = (dated(f"2001-01-0{day}", case(f"{day}/1")) for day in (1, 2, 3))
     other["provenance"]["dirty"] = True
     made = [{"provenance": {"date": f"2001-02-0{day}", "commit": None}} for day in (2, 3, 1)]
-    rows = revisions_of(gathered(run, {"old": old, "other": other, "study": {"runs": made, "x": [1]}}))
+    rows = revisions_of(
+        gathered(
+            run,
+            {"old": old, "other": other, "study": {"runs": made, "x": [1]}, "table": {"date": "2001-03-01"}},
+        )
+    )
     assert [(name, date) for name, date, _ in rows] == [
         ("this run", "2001-01-01"),
         ("old.json", "2001-01-02"),
         ("other.json", "2001-01-03"),
         ("study.json", "2001-02-03"),
+        ("table.json", "2001-03-01"),
     ]
     assert rows[2][2].endswith(" and uncommitted changes")
     assert rows[3][2] == "n/a"

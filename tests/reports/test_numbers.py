@@ -3,13 +3,23 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 from reports import findings
-from reports.agreement import Number, as_cases, by_quantity, fine, numbers, ratio_and_scatter
+from reports.agreement import (
+    Number,
+    as_cases,
+    by_quantity,
+    fine,
+    numbers,
+    printed,
+    ratio_and_scatter,
+    verdict_of,
+)
 from reports.findings import MISSING, by_claim, filled
 from reports.front_page import front_page
 from tests.reports.sample import case
@@ -47,8 +57,13 @@ def test_a_scatter_of_75_surfaces_is_known_to_a_sixth() -> None:
     assert [n.half_width for n in found] == pytest.approx([0.1808, 0.3288, 0.4932], rel=1e-3)
     assert [n.uncertainty for n in found] == pytest.approx([0.2605, 0.4677, 0.6993], rel=1e-3)
     assert [n.within for n in found] == [True, False, False]  # 1.0 is printed, to a tenth
-    said = as_cases(found)["numbers/scatter of μ"]["data"]
-    assert said == {"numbers": 3, "beyond u": 2, "largest difference": pytest.approx(2.0)}
+    said = as_cases(by_quantity(found))["numbers/scatter of μ"]["data"]
+    assert (said["numbers"], said["beyond u"]) == (3, 2)
+    assert said["largest difference"] == pytest.approx(2.0)
+    assert verdict_of(found) == "confirmed with conditions"  # one number: its readings are three
+    assert verdict_of([replace(n, part="Table 3") for n in found]) == "not confirmed"
+    assert verdict_of(found[:1]) == "confirmed"
+    assert printed(found) == {("scatter of μ",): True}
     assert list(by_quantity(numbers(CASES))) == ["scatter of μ", "A, Table 3"]
 
 
@@ -134,6 +149,9 @@ COVERED = [
         "number": name,
         "scenes": 300,
         "held": 0.9 + 0.011 * k,
+        "held_of_usable": 0.9 + 0.011 * k,
+        "usable": 0.5,
+        "p": 0.001 if kind and k == 2 else 0.5,
         "median_bar_over_error": 1.234 + k,
     }
     for k, name in enumerate(("friction_coefficient_corrected", "contact_area", "max_pressure", "approach"))
@@ -141,7 +159,7 @@ COVERED = [
 ]
 STUDIES: dict[str, Any] = {
     "coverage_corrected": {"table": COVERED},
-    "extremes": {"counts": {"right": 5, "wrong": 1, "crash": 2, "honest failure": 3}},
+    "extremes": {"counts": {"right": 0, "wrong": 1, "crash": 2, "honest failure": 3}, "states": []},
 }
 
 
@@ -160,6 +178,11 @@ def test_the_first_page_by_hand() -> None:
     assert found.hertz == ["approach 2.5 for 2.4 µm (4.2e-02)"]
     assert found.quantities == [("μ, Table 3", 1, "1.100", "", 0), ("A, Table 3", 1, "1.001", "", 1)]
     bars, extremes = found.trust
-    for text in ("μ in 90 % of 300 (1.2 times the error)", "A in 91 % of", "p_max in 92 % of 300 (3.2 times"):
+    for text in (
+        "corrected μ 90 %, 50 %, 1.2; ",
+        "p_max 92 %, 50 %, 3.2; ",
+        "Classes where coverage fails: p_max of flat (92 %)",
+    ):
         assert text in bars
-    assert extremes.startswith("1 of 11 extreme inputs gave a wrong answer, 2 a crash, and 3 a status")
+    assert "1 wrong by more than the input leaves open, 2 crashes, 3 with a status" in extremes
+    assert (found.judged, found.printed, found.all_of_table3) == (0, (1, 3), (1, 3))

@@ -33,6 +33,23 @@ def test_everything_has_a_name(html: str) -> None:
 
 
 @pytest.mark.slow
+def test_a_statement_has_one_verdict_wherever_it_stands(html: str) -> None:
+    """In the table of claims, beside figures and under every check; a check itself has none."""
+    verdict = r'<span class="verdict [\w-]+">([^<]*)</span>'
+    said = re.findall(rf'<tr id="claim-([\w-]+)">.*?{verdict}', html, flags=re.S)
+    assert len(said) > 50
+    known = dict(said)
+    shown = [(label, v) for v, label in re.findall(rf'{verdict} <a href="#claim-([\w-]+)">', html)]
+    checks = re.findall(
+        r'<dt class="fact">Of the paper</dt><dd><a href="#claim-([\w-]+)">[^<]*</a>: (.*?)</dd>', html
+    )
+    assert len(checks) > 50
+    assert {pair for pair in (*shown, *checks) if known[pair[0]] != pair[1]} == set()
+    assert not re.search(r"<dt>Note</dt><dd>(not )?confirmed", html)
+    assert '<dt class="fact">verdict</dt>' not in html
+
+
+@pytest.mark.slow
 def test_figures_have_symbols_and_units_and_no_hatching(html: str) -> None:
     figures = re.findall(r'<svg class="plot".*?</svg>', html, flags=re.S)
     assert len(figures) > 50

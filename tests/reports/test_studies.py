@@ -13,6 +13,7 @@ from reports.generator import render
 from reports.results import ResultFileError
 from reports.studies import exhibit
 from reports.studies.experiments import sentences
+from reports.studies.extremes import sentence
 from tests.reports.sample import case, results
 
 
@@ -32,7 +33,9 @@ OFFERS = [{"quantity": "mu", "error": 0.001, "M": None},
 STATES = [("load", "fft", "right", d) for d in (12, 3, 7)] + [("load", "fft", "wrong", 5)]
 STATES += [("load", "dense", "honest failure", 1), ("scale", "fft", "crash", 1)]
 EXTREMES = Names(
-    states=[{"axis": a, "series": f"s, {s}", "verdict": v, "digits": d} for a, s, v, d in STATES],
+    states=[
+        {"axis": a, "series": f"s, {s}", "verdict": v, "digits": d, "oracle": "x"} for a, s, v, d in STATES
+    ],
     counts=Names(), table=[Names()], limits=[Names()],
     conditioning={"M": [2], "condition": [3.5], "CG iterations": [4], "digits lost by a direct solve": [0.5]},
     precision={"arithmetic": ["f4"], "digits lost": {"N": [6.5]}, "cause": {"N": "sum"}, "cure": {"N": ""}},
@@ -127,8 +130,8 @@ ROWS: list[tuple[str, int, list[Any]]] = [
      [("peak", "Peak", "pass, 0.5", "fail, 3"), ("order", "Order", "fail, 2", "pass, 0.25"),
       ("shear", "Shear", "not applicable", "error")]),
     ("experiments", 0,
-     [(0.5, "40 ± 2", "41.23", "0.01", "3", "+1.2", "3.6", True),
-      ("r", "40 ± 2", "99", "0.01", "3", "+59", "3.6", False)]),
+     [(0.5, "40.0 ± 2.0", "41.2", "0.01", "3", "+1.2", "3.6", True),
+      ("r", "40.0 ± 2.0", "99.0", "0.01", "3", "+59.0", "3.6", False)]),
     ("extremes", 0, [("load", 5, 3, 1, 1, 0, 3, 7), ("scale", 1, 0, 0, 0, 1, None, None)]),
     ("extremes", 3, [("N", 6.5, "sum", "it is this code's form")]),
     ("extremes", 4, [("tau", "none", "one", "several", 7)]),
@@ -180,11 +183,19 @@ def test_series_of_figures_and_codes_that_are_not_there() -> None:
     assert any("C (not installed)" in text for text in exhibit("cross_code", CODES).paragraphs)
 
 
+def test_results_of_few_digits_and_second_solves_are_reported_apart() -> None:
+    judges = [("Hertz", 3.1), ("Hertz", 12.0), ("the scaling law", 17.0), ("the dense solver", 0.05)]
+    states = [{"verdict": "right", "oracle": oracle, "digits": digits} for oracle, digits in judges]
+    said = sentence({"states": states, "counts": {"wrong": 0, "crash": 0, "honest failure": 0}})
+    assert "2 right to 6 digits and 2 to fewer (1 judged by the dense solver, from 0.05" in said
+    assert "1 judged by Hertz, from 3.1 digits); 2 of the right ones are judged by a second solve" in said
+
+
 def test_the_first_page_says_where_the_model_fails() -> None:
     said = sentences({"experiments": EXPERIMENTS})
     assert said == [
         "1 experiments: ball on Si",
-        "1 of 2 points lie within U_val, 1 by trend alone",
+        "1 of 2 points lie within U_val, 1 with a parameter fitted to the same experiment",
         "The model fails for ball on Si (wear)",
     ]
 

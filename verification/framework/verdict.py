@@ -14,6 +14,7 @@ class Verdict(StrEnum):
     CONFIRMED = "confirmed"
     CONDITIONAL = "confirmed with conditions"
     REFUTED = "not confirmed"
+    CONSTRUCTION = "by construction"
 
 
 def judged(
@@ -26,12 +27,12 @@ def judged(
     reference_uncertainty: float = 0.0,
     unit: str = "",
 ) -> Measured:
-    """A measurement with its verdict, in the note for people and in ``data["verdict"]`` for programs."""
+    """A measurement with its verdict in ``data["verdict"]``, and the sentence as its note."""
     return Measured(
         value=value,
         reference=reference,
         reference_uncertainty=reference_uncertainty,
         unit=unit,
         data={"verdict": verdict.value, **data},
-        note=f"{verdict.value}: {sentence}",
+        note=sentence,
     )

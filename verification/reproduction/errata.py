@@ -93,13 +93,18 @@ def _limit_misfit(*, elastic: bool) -> float:
 
 
 def _coarse_misfit(*, printed: bool) -> float:
-    """Mu of Table 3's two roughest columns on 128 x 128 against Eq. (10) with the A beside it."""
-    misfits = []
-    for found in TABLE3[2:]:
-        A, mu = found.contact_area[0], found.friction_coefficient[0]
-        if not printed:
-            A, mu = (_ours(quantity, found.flat_rms) for quantity in ("contact_area", "friction_coefficient"))
-        misfits.append(_off(mu, friction_coefficient_at(LAW, SMOOTH.load / A)))
+    """Mu of Table 3's two roughest columns against Eq. (10) with the A beside it: the largest misfit of the
+    printed 128 x 128 and 256 x 256, or of ours on 128 x 128.
+    """
+    pairs = [
+        [(c.contact_area[mesh], c.friction_coefficient[mesh]) for mesh in (0, 1)]
+        if printed
+        else [(_ours("contact_area", c.flat_rms), _ours("friction_coefficient", c.flat_rms))]
+        for c in TABLE3[2:]
+    ]
+    misfits = [
+        _off(mu, friction_coefficient_at(LAW, SMOOTH.load / A)) for column in pairs for A, mu in column
+    ]
     return max(misfits)
 
 
@@ -182,8 +187,9 @@ ERRATA = (
     ),
     Erratum(
         "table3-coarse",
-        "Table 3, 128 x 128",
-        "'1.01' and '0.94' (mu / 0.1) beside '0.77' and '0.50' (A / 0.1 mm^2), mesh 128",
+        "Table 3, 128 x 128 and 256 x 256",
+        "'1.01 0.97' and '0.94 0.91' (mu / 0.1) beside '0.77 0.71' and '0.50 0.45' (A / 0.1 mm^2), "
+        "meshes 128 and 256",
         "conjecture: mu by Eq. (10) from the A beside it, which our solutions on coarse meshes obey",
         "largest relative difference of mu from Eq. (10) with the same mesh's A, 1.008 and 1.68 um",
         lambda: _coarse_misfit(printed=True),

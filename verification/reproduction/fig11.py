@@ -33,6 +33,11 @@ class Panel:
     p_skewness: float
     p_kurtosis: float
 
+    @property
+    def rms(self) -> float:
+        """Rms of the pooled values from their means."""
+        return float(np.sqrt(np.sum(self.density * self.centres**2) / np.sum(self.density)))
+
 
 def samples(realisation: int, grid: int) -> tuple[Array, Array, Array, Array]:
     """The four samples of one realisation at P = 70 N: heights in um, slopes (along sliding) in degrees.

@@ -32,9 +32,26 @@ class Cell:
         return self.ours.mean / self.printed - 1
 
     @property
-    def within_sampling(self) -> bool:
-        """True if the deviation is within the 95 % half width of a difference of two such ensembles."""
-        return abs(self.ours.mean - self.printed) <= math.sqrt(2) * self.ours.half_width
+    def within(self) -> bool:
+        """True if the deviation is within u, 95 %: the sampling of two such ensembles, and half a digit."""
+        return abs(self.ours.mean - self.printed) <= self.uncertainty
+
+    @property
+    def uncertainty(self) -> float:
+        """u, 95 %."""
+        return math.hypot(math.sqrt(2) * self.ours.half_width, half_digit(self.printed))
+
+
+def half_digit(printed: float) -> float:
+    """Half a unit of the last printed digit: mu and A (0.1 mm^2) have two decimals of 0.1, pressures three
+    digits.
+
+    >>> half_digit(0.218), half_digit(4.4e-8), half_digit(1.64e8), half_digit(1.91e9)
+    (0.0005, 5e-10, 500000.0, 5000000.0)
+    """
+    if printed < 1.0:
+        return 5e-10 if printed < 1e-3 else 5e-4
+    return 5e5 if printed < 1e9 else 5e6
 
 
 @cache
@@ -63,6 +80,7 @@ def series(table: Sequence[Cell]) -> dict[str, list[float]]:
         "printed": [cell.printed for cell in table],
         "ours": [cell.ours.mean for cell in table],
         "half width 95 %": [cell.ours.half_width for cell in table],
+        "u 95 %": [cell.uncertainty for cell in table],
         "realisations": [cell.ours.n for cell in table],
         "deviation": [cell.deviation for cell in table],
     }

@@ -179,7 +179,7 @@ def test_a_judgement_keeps_its_numbers() -> None:
         Verdict.REFUTED, "so", 2.5, data={"h": [1]}, reference=2.0, reference_uncertainty=0.125, unit="N"
     )
     data = {"verdict": "not confirmed", "h": [1]}
-    assert found == Measured(2.5, 2.0, 0.125, "N", data, "not confirmed: so")
+    assert found == Measured(2.5, 2.0, 0.125, "N", data, "so")
 
 
 @pytest.mark.parametrize("failure", [RuntimeError, SystemExit, Unavailable])

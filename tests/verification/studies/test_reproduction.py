@@ -194,7 +194,7 @@ def test_a_cell_compares_ours_with_print() -> None:
     cells = table3.cells(rows, "contact_area", (128,))
     assert [round(cell.deviation, 12) for cell in cells[1:]] == [0.1, 0.1, 0.1]
     assert cells[0].ours.n == 1
-    assert [cell.within_sampling for cell in cells] == [False, True, True, True]
+    assert [cell.within for cell in cells] == [False, True, True, True]
     assert table3.series(cells)["realisations"] == [1, 2, 2, 2]
 
 

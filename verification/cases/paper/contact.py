@@ -71,7 +71,7 @@ def edge(tier: str) -> Measured:
     sentence = (
         f"traction is {1 + excess:.3f} tau at the edge and {top:.3f} tau at the peak; Coulomb's is 0 there"
     )
-    return judged(Verdict.CONFIRMED, sentence, excess, data=_fig5_data(GRID[tier]))
+    return judged(Verdict.CONSTRUCTION, sentence, excess, data=_fig5_data(GRID[tier]))
 
 
 @cache
@@ -99,26 +99,26 @@ FIG6_TOLERANCE = {
 
 
 @family(
-    "panel, rms, um, tier, tolerance, metric, verdict",
+    "panel, rms, um, tier, tolerance, metric",
     {
         f"reproduction/fig6{panel}{'' if tier == 'quick' else '-full'}": (
             *(panel, rms, rms * 1e6, tier, FIG6_TOLERANCE[panel][tier]),
-            *(("at_least", Verdict.REFUTED) if panel == "a" else ("at_most", Verdict.CONDITIONAL)),
+            "at_least" if panel == "a" else "at_most",
         )
         for panel, rms in zip("abc", FIG6_RMS, strict=True)
         for tier in TIERS
     },
 )
-def agreement(rms: float, tier: str, verdict: Verdict) -> Measured:
+def agreement(rms: float, tier: str) -> Measured:
     """Fig. 6({panel}): effective pressure at sigma_e = {um:g} um.
 
     Claim: Fig. 6({panel}): good agreement with Greenwood and Tripp at sigma_e = {um:g} um
     Source: paper Fig. 6; Greenwood and Tripp 1967; Johnson 1985, section 13.5
     Tolerance: rms difference from Greenwood and Tripp, by area, over that of Hertz' pressure from theirs, the
-    effect of roughness: 1 for a solver without roughness, 0 for theirs. A curve more than half the effect
-    away is nearer to Hertz: no agreement, (a); less, (b) and (c). Sampling leaves 0.06 to 0.13 with 75
-    realisations and up to 0.9 with 4, so that the quick tier bounds (b) and (c) by 0.95 only; with 75 (c) is
-    bounded by 0.3, as half of Greenwood and Tripp's pressure is 0.37 away
+    effect of roughness: 1 for a solver without roughness, 0 for theirs. Theirs has the peaks of Eq. (9),
+    which the caption's curve has not: at the least roughness, (a), ours is nearer to Hertz. Sampling leaves
+    0.06 to 0.13 with 75 realisations and up to 0.9 with 4, so that the quick tier bounds (b) and (c) by 0.95
+    only; with 75 (c) is bounded by 0.3, as half of Greenwood and Tripp's pressure is 0.37 away
     """
     found = _fig6(rms, tier)
     ours, theirs = found.central(found.pressure), found.central(found.greenwood_tripp)
@@ -127,16 +127,18 @@ def agreement(rms: float, tier: str, verdict: Verdict) -> Measured:
     half_side = SMOOTH.lengths[0] / 2 / hertz().contact_radius
     carried, predicted = found.load_share(found.pressure), found.load_share(found.greenwood_tripp)
     sentence = (
-        f"rms difference {misfit:.3f} p0, Hertz' pressure {smooth:.3f} (sampling {found.noise:.3f}; "
-        f"{found.misfit(found.textbook):.3f} from the textbook's curve of mu = 4 and the caption's "
-        "alpha, which these surfaces do not have); over the inner half of the Hertz circle "
+        f"sigma_e = {rms * 1e6:.3g} um: rms difference {found.misfit(found.textbook):.3f} of Hertz' peak "
+        f"from the textbook's curve (mu = 4, the caption's alpha), {misfit:.3f} from the model with the "
+        f"peaks that these surfaces have, {found.misfit(found.hertz):.3f} from Hertz, and sampling alone "
+        f"makes {found.noise:.3f}; roughness moves the model by {smooth:.3f}; over the inner half of the "
+        "Hertz circle "
         f"{ours:.3f} of Hertz' load, Greenwood-Tripp {theirs:.3f}; {found.outside.mean():.1%} of the "
         f"load outside a0; to {edge:.2f} a0 (the domain ends at {half_side:.2f}) ours carries {carried:.1%} "
         f"of the load, Greenwood-Tripp {predicted:.1%}"
     )
     data = _fig6_data(rms, tier)
     data |= {"largest r/a0": edge, "load share": carried, "load share, Greenwood-Tripp": predicted}
-    return judged(verdict, sentence, misfit / smooth, data=data)
+    return judged(Verdict.CONDITIONAL, sentence, misfit / smooth, data=data)
 
 
 @case("reproduction/fig6d", metric="at_least", tolerance=2.0)

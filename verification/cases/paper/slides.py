@@ -24,17 +24,21 @@ def binormal(tier: str) -> Measured:
     directions = sorted({row["sliding_direction"] for row in found})
     offsets = sorted({row["sliding_offset"] for row in found})
     Q = np.array([row["binormal_force"] for row in found]).reshape(len(directions), len(offsets))
-    largest = float(np.abs(Q).max()) / SMOOTH.load
+    turned = rows_at(tier, "fig10")
+    roughest = max(row["lower_rms"] for row in turned)
+    others = [abs(row["binormal_force"]) / SMOOTH.load for row in turned if row["lower_rms"] == roughest]
+    shown, largest = float(np.abs(Q).max()) / SMOOTH.load, max(others)
     sentence = (
-        f"largest |Q| / P = {largest:.2e}, rms {float(np.sqrt(np.mean(Q**2))) / SMOOTH.load:.2e}, over "
-        f"{offsets[-1] * 1e6:.0f} um in {len(directions)} directions"
+        f"largest |Q| / P = {largest:.1e} on flats of {roughest * 1e6:.3g} um, the roughest ({len(others)} "
+        f"solutions); {shown:.1e} on one of {found[0]['lower_rms'] * 1e6:.3g} um over "
+        f"{offsets[-1] * 1e6:.0f} um in {len(directions)} directions, which the figure shows"
     )
     data = {
         "distance (um)": np.array(offsets) * 1e6,
         "direction (deg)": np.degrees(directions),
         "Q (N)": Q,
     }
-    return judged(Verdict.CONFIRMED, sentence, largest, data=data)
+    return judged(Verdict.CONFIRMED, sentence, max(shown, largest), data=data)
 
 
 @in_both_tiers("reproduction/fig10-elastic", metric="at_most", tolerance=0.03)
@@ -100,7 +104,8 @@ def cause(tier: str) -> Measured:
         "leave whatever the shape of their distribution. Slopes alone enter these sums, and in contact they "
         "are Gaussian within sampling (fig11-slopes); heights are not (fig11-heights)"
     )
-    return judged(Verdict.REFUTED, sentence, max(left), data={"left of the elastic part": left})
+    data = {"left of the elastic part": left, "left of friction": alike}
+    return judged(Verdict.REFUTED, sentence, max(left), data=data)
 
 
 @in_both_tiers("reproduction/steady-sliding", metric="at_most", tolerance=0.005)

@@ -47,7 +47,7 @@ def correlation(tier: str) -> Measured:
     balls = {"surface map": False, "ball map": True} if tier == "quick" else {}
     data: dict[str, object] = {"side (mm)": 1.61, "radius (um)": found.radius.mean * 1e6}
     data |= {name: fig4.surface(0, DRAWN, ball=ball) for name, ball in balls.items()}
-    return judged(Verdict.CONFIRMED, sentence, error, data=data)
+    return judged(Verdict.CONSTRUCTION, sentence, error, data=data)
 
 
 @in_both_tiers("reproduction/fig4-slopes", metric="relative", tolerance=0.03)
@@ -111,6 +111,7 @@ def _fig11_data(tier: str) -> dict[str, object]:
         found |= {
             f"{panel.name}: skewness": [panel.skewness.mean, panel.skewness.half_width],
             f"{panel.name}: kurtosis": [panel.kurtosis.mean, panel.kurtosis.half_width],
+            f"{panel.name}: rms": panel.rms,
         }
     return found
 

@@ -18,35 +18,35 @@ SAME = 1e-3
         "validation/tungsten": (
             "tungsten", "Diamond tip on tungsten: approach before the first yield",
             "Increments of the approach of five indentations, with the radius fitted to six others, lie "
-            "within U_val, and within 3 %",
-            0.03, "set after the result: largest |E| / D, 2.1 %, rounded up; U_val is 3 % there"),
+            "within U_val",
+            1.0, "largest |E| / U_val"),
         "validation/rubber": (
             "rubber", "Glass tip on silicone rubber: approach, with nothing fitted",
             "Increments of the approach lie within U_val, their ratio does not: the model, which has no "
             "adhesion, misses it by 18 %",
-            0.19, "set after the result: largest |E| / D, that of the ratio, rounded up"),
+            5.6, "recorded: largest |E| / U_val, that of the ratio, rounded up"),
         "validation/film": (
             "film", "Balls on films of molybdenum disulphide: friction over load",
             "The exponent of mu over the load lies within U_val",
-            0.06, "U_val over D: inputs anywhere in the stated ranges"),
+            1.0, "largest |E| / U_val: inputs anywhere in the stated ranges"),
         "validation/mica": (
             "mica", "Gold asperity on mica: friction stress, with nothing fitted",
             "A smooth asperity, for want of the roughness, predicts seven times the measured friction stress",
-            6.1, "set after the result: largest |E| / D, rounded up; no claim to accuracy"),
+            12.3, "recorded: largest |E| / U_val, rounded up"),
     },
     metric="at_most",
     tier="full",
     source="verification/experiments/measured: published measurements with their sources; ASME V&V 20 (2009)",
 )  # fmt: skip
 def experiment(name: str) -> Measured:
-    """Judge the largest |E| / D of the points, which are those of the committed comparison."""
+    """Judge the largest |E| / U_val of the points, which are those of the committed comparison."""
     found = points(name)
     kept = next(one for one in committed("experiments")["experiments"] if one["name"] == name)["points"]
     for point, row in zip(found, kept, strict=True):
         _compare(point, row)
     within = sum(point.within for point in found)
     return Measured(
-        max(abs(point.error / point.measured) for point in found),
+        max(abs(point.error) / point.uncertainty for point in found),
         note=f"{within} of {len(found)} points within U_val",
     )
 
