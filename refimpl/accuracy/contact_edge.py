@@ -30,21 +30,16 @@ EDGE_SIZE, EDGE_SIZE_SPREAD = 0.72, 0.04  # c0, s_c
 # axis; per element on a free border that cuts the contact off, which carries too little there
 OFFSET_EXCESS, STRAIGHT_EXCESS, BORDER_EXCESS = 0.35, 0.08, 0.115
 _FILLED = 0.45  # ratio of pressures from which the edge fills the element
-_REACHED, _LEFT, _MOST = (
-    0.1,
-    0.3,
-    0.4,
-)  # ratio of gaps: of an edge that reaches the element, leaves it; any edge
-_EVEN = 0.99  # ratio from which neither rises: symmetric ones are equal but for iterations
-_WIDE, _NARROW = 0.55, 0.75  # place of the edge by ratios of gaps that are no edge's: below that, and beyond
-_MEAN = -0.09  # of both places
-_UNEVEN_PRESSURE = (
-    0.25  # variance of a face without a rise of pressure over that of one without a rise of gap
-)
+# ratios of gaps: edge that reaches the element, edge that leaves it, most of any edge
+_REACHED, _LEFT, _MOST = 0.1, 0.3, 0.4
+_EVEN = 0.99  # ratio without a rise: symmetric elements differ by iterations
+_WIDE, _NARROW = 0.55, 0.75  # place of the edge at larger ratios of gaps, and from `_EVEN` on
+_MEAN = -0.09  # mean of the place by gaps less that by pressures
+_UNEVEN_PRESSURE = 0.25  # variance of a face without a rise of pressure, over that without a rise of gap
 
 
 class EdgeOffset(NamedTuple):
-    """How far a contact's edge lies from the mean within its elements.
+    """Offset of a contact's edge within its elements, from the mean.
 
     excess : by which whole elements exceed the mean (elements)
     uneven : number of faces from which gaps do not rise, and a quarter of those from which pressures do not
