@@ -13,7 +13,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from refimpl.accuracy.discretisation_error import AREA, area_scatter
+from refimpl.accuracy.discretisation_error import AREA
+from refimpl.accuracy.scatter import area_scatter
 from refimpl.driver.solve import solve
 from refimpl.errors import InputError
 from refimpl.scene.parameters import with_parameter

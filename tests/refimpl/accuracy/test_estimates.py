@@ -10,14 +10,10 @@ import pytest
 
 import refimpl as rf
 from refimpl.accuracy import discretisation_error
-from refimpl.accuracy.discretisation_error import (
-    SHEAR_BOUNDS,
-    SLOPE_SHARE,
-    edge_scatter,
-    estimates,
-)
+from refimpl.accuracy.discretisation_error import SHEAR_BOUNDS, SLOPE_SHARE, estimates
 from refimpl.accuracy.iteration_error import active_set_parts, iteration_parts
 from refimpl.accuracy.refinement import FIRST_GRIDS, relative_bound, tolerance_for, uncertainty
+from refimpl.accuracy.scatter import edge_scatter
 from refimpl.grid.straight_edges import StraightEdges
 from refimpl.model.certificate import Certificate, State
 from refimpl.model.forces import EDGE_SHARE, Forces

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.accuracy.discretisation_error import EDGE_SHARE
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.peak import NO_PEAK, Peak
 from refimpl.grid import Grid
+from refimpl.model.forces import EDGE_SHARE
 from refimpl.solution.solution import REPORTED
 from verification.coverage.drawing import SIDE
 from verification.coverage.store import GridSolve
