@@ -14,10 +14,14 @@ import scipy
 from numpy.typing import NDArray
 
 from refimpl.grid import Array
+from refimpl.measured.missing_points import fill
+from refimpl.surfaces.noise_lattice import DECAY
 from refimpl.surfaces.statistics import kurtosis, rms_height, skewness
 
 Pixel = tuple[float, float]
 SLOPES = 1e-5, 10.0  # rms slopes of machined, polished and worn surfaces lie between; um for m is 1e6
+ISOTROPIC = 1.1  # ratio of correlation lengths up to which a map counts as isotropic, or by chance:
+BY_CHANCE = 3.0  # times the correlation length over the root of the area: two of the ratio's deviations
 DIRECTIONS = 180  # directions of the half-circle in which the autocorrelation is followed
 
 
@@ -149,6 +153,14 @@ class Autocorrelation:
         long, short = (scale / math.sqrt(s) for s in strength)
         return long, short, angle
 
+    def lay(self) -> tuple[float, float, float]:
+        """The `ellipse`; a circle where its ratio is below ISOTROPIC or chance."""
+        long, short, angle = self.ellipse()
+        mean = math.sqrt(long * short)
+        area = math.prod((n - 1) * edge for n, edge in zip(self.values.shape, self.pixel, strict=True))
+        chance = 1.0 + BY_CHANCE * mean * math.sqrt(DECAY / area)
+        return (mean, mean, angle) if long / short < max(ISOTROPIC, chance) else (long, short, angle)
+
 
 @dataclass(frozen=True)
 class Spectrum:
@@ -164,14 +176,14 @@ class Spectrum:
 
     @classmethod
     def of(cls, z: Array, pixel: Pixel, anisotropy: float = 1.0, lay: float = 0.0) -> Spectrum:
-        """Hann's window on both axes; missing points count as the mean height."""
+        """Hann's window on both axes; missing points are filled by Laplace's equation."""
         windows = [np.sin(np.pi * (np.arange(n) + 0.5) / n) ** 2 for n in z.shape]
-        known = np.isfinite(z)
-        weighted = np.where(known, z - np.nanmean(z), 0.0)
+        weighted = fill(z, pixel)
+        weighted -= weighted.mean()
         weighted *= windows[0][:, None]
         weighted *= windows[1]
         power = _power(scipy.fft.fft2(weighted))
-        power *= pixel[0] * pixel[1] / float(windows[0] ** 2 @ known @ windows[1] ** 2)
+        power *= pixel[0] * pixel[1] / float(np.sum(windows[0] ** 2) * np.sum(windows[1] ** 2))
         qx, qy = (2 * np.pi * scipy.fft.fftfreq(n, edge) for n, edge in zip(z.shape, pixel, strict=True))
         cos, sin = math.cos(lay), math.sin(lay)
         along = anisotropy * (cos * qx[:, None] + sin * qy[None, :])
@@ -186,9 +198,25 @@ class Spectrum:
         )
         return cls(totals[1][use] / count[use], totals[0][use] / count[use], count[use])
 
-    def slope(self, longest: float, shortest: float) -> float:
-        """d ln C / d ln q between two wavelengths (m): least squares, each ring by its logarithmic width."""
+    def slope(self, longest: float, shortest: float) -> tuple[float, float]:
+        """Slope d ln C / d ln q between two wavelengths (m), its standard deviation by the scatter about it.
+
+        Least squares, each ring by its logarithmic width; NaN of fewer than four rings.
+        """
         use = (self.q > 2 * np.pi / longest) & (self.q < 2 * np.pi / shortest) & (self.C > 0)
         if np.count_nonzero(use) < 4:
-            return math.nan
-        return float(np.polyfit(np.log(self.q[use]), np.log(self.C[use]), 1, w=self.q[use] ** -0.5)[0])
+            return math.nan, math.nan
+        q, C = np.log(self.q[use]), np.log(self.C[use])
+        line, covariance = np.polyfit(q, C, 1, w=self.q[use] ** -0.5, cov=True)
+        return float(line[0]), math.sqrt(max(float(covariance[0, 0]), 0.0))
+
+
+def fill_error(z: Array, pixel: Pixel) -> Array:
+    """Error (m) of filling such holes: that of holes of the same pattern half a map away, moved back.
+
+    There the filled map is the truth.
+    """
+    filled, half = fill(z, pixel), tuple(n // 2 for n in z.shape)
+    holes = np.roll(np.isnan(z), half, (0, 1))
+    error = fill(np.where(holes, np.nan, filled), pixel) - filled
+    return np.roll(error, tuple(-n for n in half), (0, 1))
