@@ -140,10 +140,11 @@ class Autocorrelation:
         i, j = np.nonzero(regions == regions[middle])
         rho = self.values[i, j]
         x, y = self.lags[0][i], self.lags[1][j]
-        inside = (x != 0) | (y != 0)
+        inside = ((x != 0) | (y != 0)) & (regions[middle] > 0)
         x, y, rho = x[inside], y[inside], np.minimum(rho[inside], 1.0)
-        if len(rho) < 3:  # white noise: nothing beyond one pixel
-            return self.pixel[0], self.pixel[1], 0.0
+        if len(rho) < 3:  # white noise, nothing beyond one pixel, or a flat map
+            edge = math.sqrt(math.prod(self.pixel))
+            return edge, edge, 0.0
         scale = max(float(np.abs(x).max()), float(np.abs(y).max()))
         design = np.stack([x**2, 2 * x * y, y**2], axis=1) / scale**2
         a, b, c = np.linalg.lstsq(design * rho[:, None], -np.log(rho) * rho, rcond=None)[0]
