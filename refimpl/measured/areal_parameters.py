@@ -177,14 +177,14 @@ class Spectrum:
 
     @classmethod
     def of(cls, z: Array, pixel: Pixel, anisotropy: float = 1.0, lay: float = 0.0) -> Spectrum:
-        """Hann's window on both axes; missing points are filled by Laplace's equation."""
+        """Hann's window on both axes; missing points count as the mean height."""
         windows = [np.sin(np.pi * (np.arange(n) + 0.5) / n) ** 2 for n in z.shape]
-        weighted = fill(z, pixel)
-        weighted -= weighted.mean()
+        known = np.isfinite(z)
+        weighted = np.where(known, z - np.nanmean(z), 0.0)
         weighted *= windows[0][:, None]
         weighted *= windows[1]
         power = _power(scipy.fft.fft2(weighted))
-        power *= pixel[0] * pixel[1] / float(np.sum(windows[0] ** 2) * np.sum(windows[1] ** 2))
+        power *= pixel[0] * pixel[1] / float(windows[0] ** 2 @ known @ windows[1] ** 2)
         qx, qy = (2 * np.pi * scipy.fft.fftfreq(n, edge) for n, edge in zip(z.shape, pixel, strict=True))
         cos, sin = math.cos(lay), math.sin(lay)
         along = anisotropy * (cos * qx[:, None] + sin * qy[None, :])

@@ -21,6 +21,7 @@ from refimpl.measured.areal_parameters import (
     nayak,
 )
 from refimpl.measured.measured_surface import MeasuredSurface
+from refimpl.measured.missing_points import fill
 from refimpl.measured.roughness_fit import RoughnessFit, fit_roughness
 from refimpl.surfaces.surface import pixel_edges
 
@@ -69,8 +70,8 @@ class Inspection:
 
     @cached_property
     def spectrum(self) -> Spectrum:
-        """Spectrum of the levelled map, averaged over circles."""
-        return Spectrum.of(self.z, self.pixel)
+        """Spectrum of the levelled map, averaged over circles; missing points are filled."""
+        return Spectrum.of(fill(self.z, self.pixel), self.pixel)
 
     @cached_property
     def parameters(self) -> dict[str, float]:
