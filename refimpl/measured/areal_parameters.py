@@ -14,10 +14,14 @@ import scipy
 from numpy.typing import NDArray
 
 from refimpl.grid import Array
+from refimpl.measured.missing_points import fill
+from refimpl.surfaces.noise_lattice import DECAY
 from refimpl.surfaces.statistics import kurtosis, rms_height, skewness
 
 Pixel = tuple[float, float]
 SLOPES = 1e-5, 10.0  # rms slopes of machined, polished and worn surfaces lie between; um for m is 1e6
+ISOTROPIC = 1.1  # ratio of correlation lengths up to which a map counts as isotropic, or by chance:
+BY_CHANCE = 3.0  # times the correlation length over the root of the area: two of the ratio's deviations
 DIRECTIONS = 180  # directions of the half-circle in which the autocorrelation is followed
 
 
@@ -136,10 +140,11 @@ class Autocorrelation:
         i, j = np.nonzero(regions == regions[middle])
         rho = self.values[i, j]
         x, y = self.lags[0][i], self.lags[1][j]
-        inside = (x != 0) | (y != 0)
+        inside = ((x != 0) | (y != 0)) & (regions[middle] > 0)
         x, y, rho = x[inside], y[inside], np.minimum(rho[inside], 1.0)
-        if len(rho) < 3:  # white noise: nothing beyond one pixel
-            return self.pixel[0], self.pixel[1], 0.0
+        if len(rho) < 3:  # white noise, nothing beyond one pixel, or a flat map
+            edge = math.sqrt(math.prod(self.pixel))
+            return edge, edge, 0.0
         scale = max(float(np.abs(x).max()), float(np.abs(y).max()))
         design = np.stack([x**2, 2 * x * y, y**2], axis=1) / scale**2
         a, b, c = np.linalg.lstsq(design * rho[:, None], -np.log(rho) * rho, rcond=None)[0]
@@ -148,6 +153,14 @@ class Autocorrelation:
         angle = math.atan2(axes[1, 0], axes[0, 0]) % math.pi
         long, short = (scale / math.sqrt(s) for s in strength)
         return long, short, angle
+
+    def lay(self) -> tuple[float, float, float]:
+        """The `ellipse`; a circle where its ratio is below ISOTROPIC or chance."""
+        long, short, angle = self.ellipse()
+        mean = math.sqrt(long * short)
+        area = math.prod((n - 1) * edge for n, edge in zip(self.values.shape, self.pixel, strict=True))
+        chance = 1.0 + BY_CHANCE * mean * math.sqrt(DECAY / area)
+        return (mean, mean, angle) if long / short < max(ISOTROPIC, chance) else (long, short, angle)
 
 
 @dataclass(frozen=True)
@@ -186,9 +199,25 @@ class Spectrum:
         )
         return cls(totals[1][use] / count[use], totals[0][use] / count[use], count[use])
 
-    def slope(self, longest: float, shortest: float) -> float:
-        """d ln C / d ln q between two wavelengths (m): least squares, each ring by its logarithmic width."""
+    def slope(self, longest: float, shortest: float) -> tuple[float, float]:
+        """Slope d ln C / d ln q between two wavelengths (m), its standard deviation by the scatter about it.
+
+        Least squares, each ring by its logarithmic width; NaN of fewer than four rings.
+        """
         use = (self.q > 2 * np.pi / longest) & (self.q < 2 * np.pi / shortest) & (self.C > 0)
         if np.count_nonzero(use) < 4:
-            return math.nan
-        return float(np.polyfit(np.log(self.q[use]), np.log(self.C[use]), 1, w=self.q[use] ** -0.5)[0])
+            return math.nan, math.nan
+        q, C = np.log(self.q[use]), np.log(self.C[use])
+        line, covariance = np.polyfit(q, C, 1, w=self.q[use] ** -0.5, cov=True)
+        return float(line[0]), math.sqrt(max(float(covariance[0, 0]), 0.0))
+
+
+def fill_error(z: Array, pixel: Pixel) -> Array:
+    """Error (m) of filling such holes: that of holes of the same pattern half a map away, moved back.
+
+    There the filled map is the truth.
+    """
+    filled, half = fill(z, pixel), tuple(n // 2 for n in z.shape)
+    holes = np.roll(np.isnan(z), half, (0, 1))
+    error = fill(np.where(holes, np.nan, filled), pixel) - filled
+    return np.roll(error, tuple(-n for n in half), (0, 1))

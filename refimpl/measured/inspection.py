@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -12,15 +12,16 @@ import numpy as np
 
 from refimpl.grid import Array
 from refimpl.measured.areal_parameters import (
-    DIRECTIONS,
     Autocorrelation,
     Spectrum,
+    fill_error,
     height_parameters,
     implausible_slope,
     mean_square_slopes,
     nayak,
 )
 from refimpl.measured.measured_surface import MeasuredSurface
+from refimpl.measured.missing_points import fill
 from refimpl.measured.roughness_fit import RoughnessFit, fit_roughness
 from refimpl.surfaces.surface import pixel_edges
 
@@ -40,7 +41,7 @@ PARAMETERS = {
     "l10_along": ("longest", "m"),
     "le_across": ("shortest distance to an autocorrelation of 1/e", "m"),
     "le_along": ("longest", "m"),
-    "lay_deg": ("direction of slowest decay, degrees from x", "deg"),
+    "lay_deg": ("direction of slowest decay from x, anticlockwise", "deg"),
     "psd_slope": ("d ln C / d ln q below the 1/e length", ""),
     "hurst": ("from that slope, -(slope + 2) / 2", ""),
     "nayak": ("m0 m4 / m2^2 (Gaussian autocorrelation: 3)", ""),
@@ -52,7 +53,8 @@ class Inspection:
     """A measured surface and its levelled map ``z[i, j]`` (m; missing points NaN), as it lies on its body.
 
     ``parameters`` are of that map, by the names of PARAMETERS, SI; NaN where the map does not tell: an
-    autocorrelation that does not fall far enough within half the map, a spectrum of too few rings.
+    autocorrelation that does not fall far enough within half the map or is isotropic, a spectrum of too few
+    rings or that holes decide. ``deviations`` has standard deviations of some.
     """
 
     surface: MeasuredSurface
@@ -68,8 +70,8 @@ class Inspection:
 
     @cached_property
     def spectrum(self) -> Spectrum:
-        """Spectrum of the levelled map, averaged over circles."""
-        return Spectrum.of(self.z, self.pixel)
+        """Spectrum of the levelled map, averaged over circles; missing points are filled."""
+        return Spectrum.of(fill(self.z, self.pixel), self.pixel)
 
     @cached_property
     def parameters(self) -> dict[str, float]:
@@ -84,11 +86,34 @@ class Inspection:
             away = self.autocorrelation.distances(level)
             found[f"{name}_across"] = float(np.nanmin(away)) if np.isfinite(away).any() else math.nan
             found[f"{name}_along"] = float(away.max())  # NaN where one direction does not fall so far
-        found["lay_deg"] = float(np.argmax(np.nan_to_num(fall, nan=np.inf))) * 180.0 / DIRECTIONS
-        longest = 2 * math.pi * found["le_across"]
-        slope = self.spectrum.slope(longest, 4.0 * max(self.pixel)) if math.isfinite(longest) else math.nan
+        long, short, lay = self.autocorrelation.lay()
+        found["lay_deg"] = round(math.degrees(lay), 1) % 180.0 if long > short else math.nan
+        slope = self._psd_slope(found["le_across"])[0]
         found |= {"psd_slope": slope, "hurst": -(slope + 2.0) / 2.0, "nayak": nayak(self.z, self.pixel)}
         return found
+
+    @cached_property
+    def deviations(self) -> dict[str, float]:
+        """Standard deviations of the parameters of the spectrum's slope, by its scatter about the line."""
+        slope = self._psd_slope(self.parameters["le_across"])[1]
+        return {"psd_slope": slope, "hurst": slope / 2.0}
+
+    def _psd_slope(self, length: float) -> tuple[float, float]:
+        """Slope of the spectrum below ``length`` (m), its deviation; NaN where holes decide it.
+
+        Holes decide where the slope without the spectrum of `fill_error` differs by more than its deviation.
+        """
+        if not math.isfinite(length):
+            return math.nan, math.nan
+        range_ = 2 * math.pi * length, 4.0 * max(self.pixel)
+        slope, deviation = self.spectrum.slope(*range_)
+        if np.isnan(self.z).any():
+            error = Spectrum.of(fill_error(self.z, self.pixel), self.pixel).C
+            rest = replace(self.spectrum, C=np.maximum(self.spectrum.C - error, np.finfo(float).tiny))
+            again = rest.slope(*range_)[0]
+            if not abs(again - slope) <= deviation:
+                return math.nan, math.nan
+        return slope, deviation
 
     def fit(self, kind: str, draws: int = 16) -> RoughnessFit:
         """Fit a ``"gaussian"`` or ``"self-affine"`` roughness to the levelled map."""
@@ -113,6 +138,7 @@ class Inspection:
             "radius": self.radius,
             "window": {"points": list(self.z.shape), "missing": int(np.isnan(self.z).sum())},
             "parameters": self.parameters,
+            "deviations": self.deviations,
             "notes": [*self.surface.prepared.notes, *implausible_slope(self.z, self.pixel)],
         }
 

@@ -227,7 +227,7 @@ class MeasuredSurface(Surface):
         return min(self.reading.pixel)
 
     def notes(self, grid: Grid) -> tuple[str, ...]:
-        """What reading and preparing changed, the form subtracted, what is filled, what is doubtful."""
+        """Notes on reading and preparation, the form subtracted, filled points and doubtful sizes."""
         name, window = self._file.name, self._crop(grid.lengths)
         z, form, rest = self._central(grid.lengths)
         pixel = self._oriented.reading.pixel

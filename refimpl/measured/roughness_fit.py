@@ -1,7 +1,7 @@
 """Random roughness like a measured map: parameters of a Gaussian or self-affine surface, with uncertainties.
 
-Uncertainties are standard deviations over maps drawn with the fitted parameters, levelled by a plane and
-fitted in the same way (a parametric bootstrap; Efron & Tibshirani 1993, chapter 6).
+Uncertainties are standard deviations over maps drawn with the fitted parameters and the same points missing,
+levelled by a plane and fitted in the same way (a parametric bootstrap; Efron & Tibshirani 1993, chapter 6).
 """
 
 from __future__ import annotations
@@ -21,8 +21,7 @@ from refimpl.surfaces.noise_lattice import DECAY
 from refimpl.surfaces.waves import rotated
 
 KINDS = ("gaussian", "self-affine")
-ISOTROPIC = 1.1  # ratio of correlation lengths up to which a map counts as isotropic, or by chance:
-BY_CHANCE = 3.0  # times the correlation length over the root of the area: two of the ratio's deviations
+_CARRIED = 0.97  # part of the mean square slope; up to 0.99 the edge at short_cut alone makes a misfit of 2
 _RING = 30  # points of a ring, whose mean then has a deviation of 20 %
 _LARGEST = 512  # points an axis of drawn maps
 _SET = ("long_cut", "short_cut")
@@ -45,12 +44,15 @@ class RoughnessFit:
     """Parameters of a random surface by the keys of a scene file, SI, and their standard deviations.
 
     Lengths of a Gaussian surface are ``lx``, ``ly`` here. What has no deviation is set, not fitted.
+    ``misfit``: rms of ln(C of the map / mean C of the drawn maps) over the rings of the spectrum that carry
+    97 % of the map's mean square slope, and the mean of that of each drawn map: a good fit has both alike.
     """
 
     kind: str
     values: Values
     deviations: Values
     notes: tuple[str, ...]
+    misfit: tuple[float, float]
 
     def table(self, seed: int = 1) -> dict[str, object]:
         """The surface as a table of a scene file."""
@@ -64,7 +66,9 @@ class RoughnessFit:
 
     def toml(self, seed: int = 1) -> str:
         """Format the table as TOML, uncertainties as comments."""
-        lines = [f"# {note}" for note in self.notes]
+        own, drawn = self.misfit
+        said = f"misfit {own:.2g}, of maps drawn from the fit {drawn:.2g} (rms of ln C, map over fit)"
+        lines = [f"# {note}" for note in (said, *self.notes)]
         for key, value in self.table(seed).items():
             names = ("lx", "ly") if key == "correlation_length" else (key,)
             spreads = [self.deviations[name] for name in names if name in self.deviations]
@@ -90,13 +94,13 @@ def fit_roughness(z: Array, pixel: Pixel, kind: str, draws: int = 16) -> Roughne
         raise InputError("fit", "a flat map", "a rough one")
     values, notes = estimate(z, pixel)
     density = _gaussian_psd if kind == "gaussian" else _self_affine_psd
-    drawn = _estimates(z.shape, pixel, values, density(values), estimate, draws)
+    drawn, misfit = _estimates(z, pixel, values, density(values), estimate, draws)
     means = {name: float(np.mean(found)) for name, found in drawn.items()}
     unbiased = {name: value**2 / means[name] if name in _SCALES else value for name, value in values.items()}
     if "hurst" in values:
         unbiased["hurst"] = float(np.clip(2 * values["hurst"] - means["hurst"], 0.01, 1.0))
     deviations = {name: float(np.std(found, ddof=1)) for name, found in drawn.items() if name not in _SET}
-    return RoughnessFit(kind, unbiased, deviations, notes)
+    return RoughnessFit(kind, unbiased, deviations, notes, misfit)
 
 
 def _gaussian(z: Array, pixel: Pixel) -> tuple[Values, tuple[str, ...]]:
@@ -108,11 +112,7 @@ def _gaussian(z: Array, pixel: Pixel) -> tuple[Values, tuple[str, ...]]:
 
 def _ellipse(z: Array, pixel: Pixel) -> Lay:
     """Longer and shorter length of Eq. (9) and the lay (rad); equal lengths where the ratio is chance."""
-    long, short, lay = Autocorrelation.of(z, pixel).ellipse()
-    mean = math.sqrt(long * short)
-    chance = 1.0 + BY_CHANCE * mean * math.sqrt(DECAY / (z.size * pixel[0] * pixel[1]))
-    if long / short < max(ISOTROPIC, chance):
-        long = short = mean
+    long, short, lay = Autocorrelation.of(z, pixel).lay()
     return long * math.sqrt(DECAY), short * math.sqrt(DECAY), lay
 
 
@@ -192,18 +192,19 @@ def _self_affine_psd(values: Values) -> Callable[[Array, Array], Array]:
 
 
 def _estimates(
-    shape: tuple[int, ...],
+    z: Array,
     pixel: Pixel,
     values: Values,
     density: Callable[[Array, Array], Array],
     estimate: Callable[[Array, Pixel], tuple[Values, tuple[str, ...]]],
     draws: int,
-) -> dict[str, Array]:
-    """Estimates from drawn maps, by name.
+) -> tuple[dict[str, Array], tuple[float, float]]:
+    """Estimates from drawn maps, by name, and the misfit of ``z`` to their spectra.
 
     Maps of more than 512 points an axis are drawn with every second, third ... point; where waves would be
     lost by that, a part of the map is drawn, and the scatter goes down with the root of the area.
     """
+    shape = z.shape
     thin = max(1, math.ceil(max(shape) / _LARGEST))
     finest = values.get("ly", values.get("roll_off", 0.0)) / max(pixel)
     part = thin > 1 and finest < 12 * thin
@@ -212,15 +213,31 @@ def _estimates(
     scale = math.sqrt(math.prod(drawn_shape) / math.prod(shape)) if part else 1.0
     rng = np.random.default_rng(0)
     x, y = (np.arange(n, dtype=float) for n in drawn_shape)
-    found = []
+    alike = (z if part else z[::thin, ::thin])[: drawn_shape[0], : drawn_shape[1]]
+    found, spectra = [], []
     for _ in range(draws):
         drawn = _drawn(drawn_shape, edges, density, values["rms"], rng)
-        found.append(estimate(drawn - fit_polynomial(x, y, drawn, 1)(x, y), edges)[0])
-    return {
+        drawn[np.isnan(alike)] = np.nan
+        drawn = drawn - fit_polynomial(x, y, drawn, 1)(x, y)
+        found.append(estimate(drawn, edges)[0])
+        spectra.append(Spectrum.of(drawn, edges).C)
+    misfit = _misfit(Spectrum.of(alike, edges), np.array(spectra))
+    estimates = {
         name: value
         + scale * (np.array([_near(draw.get(name, value), value, name) for draw in found]) - value)
         for name, value in values.items()
     }
+    return estimates, misfit
+
+
+def _misfit(own: Spectrum, drawn: Array) -> tuple[float, float]:
+    """Rms of ln(C / mean C of the drawn) over the rings that carry the slopes: of the map, of a drawn map."""
+    power = np.cumsum(own.count * own.q**2 * own.C)
+    use = slice(1, max(int(np.searchsorted(power, _CARRIED * power[-1])) + 1, 4))  # the plane is subtracted
+    floor = np.finfo(float).tiny
+    mean = np.log(np.maximum(drawn.mean(axis=0), floor))
+    away = [float(np.sqrt(np.mean((np.log(np.maximum(C, floor)) - mean)[use] ** 2))) for C in (own.C, *drawn)]
+    return away[0], float(np.mean(away[1:]))
 
 
 def _near(drawn: float, value: float, name: str) -> float:

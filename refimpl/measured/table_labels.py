@@ -17,18 +17,18 @@ _WHOLE = re.compile(r"\d+")
 
 
 def _counts(cells: list[str]) -> bool:
-    """Whether entries are the whole numbers from 0 or 1 on."""
+    """Return whether entries are the whole numbers from 0 or 1 on."""
     whole = len(cells) > 1 and all(map(_WHOLE.fullmatch, cells)) and int(cells[0]) in (0, 1)
     return whole and [int(cell) for cell in cells] == list(range(int(cells[0]), int(cells[0]) + len(cells)))
 
 
 def _are_heights(cells: Iterable[list[str]]) -> bool:
-    """Whether entries beside labels are not all whole, as labels are."""
+    """Return whether entries beside labels are not all whole, as labels are."""
     return not all(_WHOLE.fullmatch(cell) for row in cells for cell in row[1:] if cell)
 
 
 def is_title(sample: list[list[str]]) -> bool:
-    """Whether the first row counts the columns, beside an entry that is no number or from its first on."""
+    """Return whether the first row counts the columns, all of them or all but one without a number."""
     first = sample[0]
     if len(first) == POINT or len({len(row) for row in sample}) > 1:
         return False
@@ -52,6 +52,6 @@ def without_labels(path: Path, rows: Array, sample: list[list[str]]) -> tuple[Ar
 
 
 def _is_even(values: Array) -> bool:
-    """Whether values rise or fall by one step, as coordinates do."""
+    """Return whether values rise or fall by one step, as coordinates do."""
     steps = np.diff(values)
     return len(steps) > 1 and steps[0] != 0 and bool(np.allclose(steps, steps[0], rtol=1e-3, atol=0))

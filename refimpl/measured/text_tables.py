@@ -130,7 +130,7 @@ class _Layout:
         return [cell.strip() for cell in line.split(self.separator)]
 
     def ends(self, line: str) -> bool:
-        """Whether the separator ends the line."""
+        """Return whether the separator ends the line."""
         return self.separator is not None and line.endswith(self.separator)
 
     def is_number(self, cell: str) -> bool:
@@ -145,7 +145,7 @@ class _Layout:
         return any(map(self.is_number, cells)) and not self.unknown(cells)
 
     def is_row(self, line: str, width: int) -> bool:
-        """Whether a line is a row of that width, an alien mark in it or not: texts of a header differ."""
+        """Return whether a line is a row of that width, alien marks or not: texts of a header differ."""
         cells = self.cells(line)
         unknown = self.unknown(cells)
         known = len(unknown) + sum(map(self.is_number, cells))

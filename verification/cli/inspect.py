@@ -63,7 +63,12 @@ def run(options: argparse.Namespace) -> int:
         if options.fit:
             line.show(f"{options.file}: fitting")
             fit = found.fit(options.fit)
-            document["fit"] = {"table": fit.table(), "deviations": fit.deviations, "notes": list(fit.notes)}
+            document["fit"] = {
+                "table": fit.table(),
+                "deviations": fit.deviations,
+                "misfit": fit.misfit,
+                "notes": list(fit.notes),
+            }
             text += f"\n\n{fit.toml()}".rstrip()
         if options.plot is not None:
             from verification.cli.plot_surface import draw_inspection
@@ -94,15 +99,20 @@ def table(found: Inspection) -> str:
          f"{doc['window']['missing']} missing"],
     ]  # fmt: skip
     numbers = [
-        [name, _shown(doc["parameters"][name], unit), what] for name, (what, unit) in PARAMETERS.items()
+        [name, _shown(doc["parameters"][name], unit, doc["deviations"].get(name)), what]
+        for name, (what, unit) in PARAMETERS.items()
     ]
     parts = [f"{doc['file']}\n" + columns([row for row in rows if row[1]]), columns(numbers)]
     return "\n\n".join(parts + [wrapped(note, "note: ") for note in doc["notes"]])
 
 
-def _shown(value: float, unit: str) -> str:
+def _shown(value: float, unit: str, deviation: float | None = None) -> str:
+    from refimpl.accuracy.digits import digits_of
+
     if not math.isfinite(value):
         return "-"
+    if deviation is not None:
+        return f"{digits_of(value, deviation)} +- {deviation:.1g}"
     return _length(value) if unit == "m" else f"{value:.4g} {unit}".rstrip()
 
 

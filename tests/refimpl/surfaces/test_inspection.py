@@ -125,6 +125,57 @@ def test_a_lay_is_found(tmp_path: Path, lay: float) -> None:
     assert found["Str"] == pytest.approx(0.2, abs=0.06)
 
 
+@pytest.mark.parametrize("degrees", [0, 30, 90, 135])
+def test_a_lay_of_grooves_and_of_the_transposed_map(tmp_path: Path, degrees: int) -> None:
+    """Their autocorrelation does not fall along them; those of the transposed map lie at 90 deg less."""
+    turn, rng = math.radians(degrees), np.random.default_rng(5)
+    x, y = np.arange(120.0)[:, None], np.arange(120.0)[None, :]
+    across = math.cos(turn) * y - math.sin(turn) * x
+    z = np.sin(across / 3.0) + 0.6 * np.sin(across / 4.3 + 1.0) + 0.05 * rng.normal(size=(120, 120))
+    for heights, lay in ((z, degrees), (z.T, 90 - degrees)):
+        np.save(tmp_path / "a.npy", heights)
+        found = rf.inspect(tmp_path / "a.npy", unit="um", pixel_size=1e-6).parameters["lay_deg"]
+        assert abs((found - lay + 90) % 180 - 90) < 2
+    np.save(tmp_path / "a.npy", gaussian(seed=4))
+    assert math.isnan(rf.inspect(tmp_path / "a.npy", unit="m", pixel_size=PIXEL).parameters["lay_deg"])
+
+
+@pytest.mark.parametrize("holes", ["none", "few", "scattered", "one"])
+def test_a_slope_of_the_spectrum_that_holes_decide_is_no_number(tmp_path: Path, holes: str) -> None:
+    """A slope that is stated is within three deviations of that of the map without holes."""
+    z, rng = gaussian(seed=6), np.random.default_rng(6)
+    np.save(tmp_path / "a.npy", z)
+    whole = rf.inspect(tmp_path / "a.npy", unit="m", pixel_size=PIXEL)
+    if holes == "scattered":
+        z[rng.random(z.shape) < 0.01] = np.nan
+    elif holes != "none":
+        side = 40 if holes == "one" else 1
+        z[100 : 100 + side, 90 : 90 + side] = np.nan
+    np.save(tmp_path / "a.npy", z)
+    found = rf.inspect(tmp_path / "a.npy", unit="m", pixel_size=PIXEL)
+    if holes in ("none", "few"):
+        away = abs(found.parameters["hurst"] - whole.parameters["hurst"])
+        assert away <= 3 * found.deviations["hurst"]
+        assert found.document()["deviations"]["psd_slope"] == 2 * found.deviations["hurst"]
+    else:
+        assert math.isnan(found.parameters["hurst"])
+        assert math.isnan(found.deviations["psd_slope"])
+
+
+def test_the_misfit_is_less_for_the_kind_that_the_map_is_of() -> None:
+    """With a hole, which drawn maps have as well."""
+    draws = {
+        "gaussian": gaussian(seed=7),
+        "self-affine": _drawn(SHAPE, PIXEL, _self_affine_psd(FRACTAL), 1e-6, np.random.default_rng(7)),
+    }
+    for own, z in draws.items():
+        z[60:64, 70:75] = np.nan
+        fits = {kind: fit_roughness(z, PIXEL, kind, 8) for kind in draws}
+        assert min(fits, key=lambda kind: fits[kind].misfit[0]) == own
+        assert fits[own].misfit[0] < 1.0
+        assert f"# misfit {fits[own].misfit[0]:.2g}, of maps drawn" in fits[own].toml()
+
+
 def test_what_the_map_does_not_tell_is_no_number(tmp_path: Path) -> None:
     np.save(tmp_path / "ridge.npy", np.sin(np.arange(60) / 20)[:, None] * np.ones(50))
     found = rf.inspect(tmp_path / "ridge.npy", unit="um", pixel_size=1e-6).parameters

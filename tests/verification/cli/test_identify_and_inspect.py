@@ -175,11 +175,13 @@ def test_the_table_of_an_inspected_surface() -> None:
         "missing": 7, "pixel": [2e-6, 5e-7], "size": [6e-5, 1e-5], "unit": "um", "orientation": "",
         "level": "sphere", "slopes": [0.01, -0.02], "radius": 0.4, "notes": (),
         "window": {"points": [8, 9], "missing": 2}, "parameters": dict.fromkeys(PARAMETERS, 3e-12),
+        "deviations": {"psd_slope": 1e-12},
     }  # fmt: skip
     found: Any = Made(document=lambda: document)
     assert rows(inspect.table(found)) > {
         "channel Z; there are also I", "points 30 x 20, 7 missing", "pixel 2 um x 500 nm",
         "size 60 um x 10 um", "level sphere, slopes 0.01, -0.02, radius 400 mm",
+        "psd_slope 3.0e-12 +- 1e-12 d ln C / d ln q below the 1/e length",
         "window 8 x 9 points, 2 missing", "Sz 3 pm highest to lowest point",
     }  # fmt: skip
 
