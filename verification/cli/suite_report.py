@@ -74,6 +74,23 @@ def unseen_faults(results: Iterable[Result]) -> list[str]:
     return [fault.value for fault in Fault if fault not in seen]
 
 
+def likely_faults(results: Iterable[Result], most: int = 4) -> list[str]:
+    """Faults by the share of the cases that name them and fail, then by how many fail; the first of them.
+
+    A fault fails wherever it is named, so a case that names it and passes speaks against it.
+    """
+    from verification.solver_suite.check import Fault
+    from verification.solver_suite.suite import suite
+
+    status = {r.id: r.status for r in results if r.status in ("pass", "fail")}
+    ranked = []
+    for fault in Fault:
+        named = [status[check.id] for check in suite() if fault in check.catches and check.id in status]
+        if failed := named.count("fail"):
+            ranked.append((failed / len(named), failed, f"{fault} ({failed} of {len(named)})"))
+    return [words for *_, words in sorted(ranked, key=lambda each: each[:2], reverse=True)[:most]]
+
+
 def document(judged: Judged, solver: Mapping[str, str | None], stated: Mapping[str, Any]) -> dict[str, Any]:
     """Return the JSON document; ``solver`` has its name, version and checksum, ``stated`` its abilities."""
     from verification.solver_suite import diagnosis, suite
@@ -92,6 +109,7 @@ def document(judged: Judged, solver: Mapping[str, str | None], stated: Mapping[s
             "left_running": list(judged.left),
             "low_order": judged.low_order,
             "unseen_faults": judged.unseen,
+            "likely_faults": likely_faults(judged.results),
             "short_list": diagnosis.of_results(judged.results),
         },
     }
@@ -117,7 +135,12 @@ def table(name: str, judged: Judged) -> str:
     units = ["relative" if r.metric == "relative" else r.unit for r in ran]  # a relative error has none else
     errors = [f"{judgement(r)} {unit}" if judgement(r) else "" for r, unit in zip(ran, units, strict=True)]
     rows = [[r.status, r.id, error, f"{r.seconds:.1f} s"] for r, error in zip(ran, errors, strict=True)]
-    reasons = [[r.id, reason(r)] for r in ran if r.status != "pass"]
+    claims = {check.id: check.claim for check in judged.checks}
+    reasons = [
+        [r.id, reason(r, claims[r.id], error)]
+        for r, error in zip(ran, errors, strict=True)
+        if r.status != "pass"
+    ]
     counts = ", ".join(f"{number} {status}" for status, number in done.counts.items())
     parts = [columns(rows, indent=""), columns(reasons)]
     left_out = [r for r in done.results if r.status == "unavailable"]
@@ -125,6 +148,8 @@ def table(name: str, judged: Judged) -> str:
         ids = {r.note: [o.id.partition("/")[2] for o in left_out if o.note == r.note] for r in left_out}
         lines = [wrapped(", ".join(of_note), f"  {note}: ") for note, of_note in ids.items()]
         parts.append("\n".join(["not applicable, and not passed:", *lines]))
+    if named := likely_faults(done.results):
+        parts.append("faults by the share of their cases that fail:\n" + wrapped(", ".join(named), "  "))
     if listed := of_results(done.results):
         parts.append("problems of the covering design fail mostly where:\n  " + "\n  ".join(listed))
     if judged.unseen:
@@ -136,8 +161,8 @@ def table(name: str, judged: Judged) -> str:
     return "\n\n".join([part for part in parts if part] + [f"{name}: {counts}; {done.seconds:.0f} s"])
 
 
-def reason(result: Result) -> str:
-    """Why there is no verdict; or what was claimed, and what is known of the failure."""
+def reason(result: Result, claim: str, error: str) -> str:
+    """Why there is no verdict; or the claim, the error beside its tolerance, and the finding."""
     if result.status == "error":
         return result.note
-    return f"{result.claim}. Found: {result.note}" if result.note else result.claim
+    return f"{claim}. Found: {'; '.join(filter(None, (error, result.note)))}"

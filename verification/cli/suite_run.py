@@ -66,7 +66,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group(
         "bring your own solver",
         "Run the suite of verification.solver_suite with it, one case after the other whatever --tier\n"
-        "and --jobs say: the cases that are within its abilities; the others are named. Of the abilities\n"
+        "and --jobs say: the cases that are within its abilities; the others are named. --only '!GLOB'\n"
+        "excludes cases: '!*/design-large*' the largest grids. Of the abilities\n"
         "that a Python function carries, --able, --largest, --precision and --strongest replace only what\n"
         "they state.",
     )

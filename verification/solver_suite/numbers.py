@@ -18,7 +18,6 @@ import math
 import numpy as np
 
 from refimpl.grid import Array, Mask
-from verification.framework.case import Disproved
 from verification.solver_suite import reference_solution
 from verification.solver_suite.protocol import NUMBERS, Answer, ContactProblem
 
@@ -27,17 +26,18 @@ ROUNDING = 1e-9
 HALF_AN_ELEMENT = 0.5
 
 
-def require(problem: ContactProblem, answer: Answer) -> None:
-    """Raise `Disproved` where a number of the answer is not that of its pressures."""
-    pressure = np.asarray(answer.pressure, dtype=np.float64)
+def wrong(problem: ContactProblem, answer: Answer) -> list[str]:
+    """Return a sentence on each number of the answer that is not that of its pressures."""
+    pressure, sentences = np.asarray(answer.pressure, dtype=np.float64), []
     for name in NUMBERS:
         found = getattr(answer, name)
         if found is None or (judged := JUDGES[name](problem, pressure)) is None:
             continue
         right, allowed, unit = judged
         if not abs(found - right) <= allowed:
-            given = f"its pressures give {right:.6g} +- {allowed:.1g} {unit}"
-            raise Disproved(f"{name.replace('_', ' ')} {found:.6g} {unit}: {given}")
+            given = f"its pressures give {right:.9g} +- {allowed:.1g} {unit}"
+            sentences.append(f"{name.replace('_', ' ')} {found:.9g} {unit}: {given}")
+    return sentences
 
 
 Number = tuple[float, float, str]

@@ -41,16 +41,22 @@ def identity() -> dict[str, str | int]:
 
 
 def select(globs: Iterable[str] = (), among: tuple[Check, ...] | None = None) -> tuple[Check, ...]:
-    """The checks whose id (``contestant/...``) matches any of ``globs``; all without any.
+    """The checks whose id (``contestant/...``) matches a glob; all without any. ``!glob`` takes away.
 
-    ``among`` takes the place of the suite. Raises LookupError for a glob that matches none: an empty
-    selection must not look like success.
+    ``among`` takes the place of the suite. Raises LookupError for a glob that matches none, and where all
+    are taken away: an empty selection must not look like success.
     """
     patterns, checks_ = tuple(globs), suite() if among is None else among
-    idle = [p for p in patterns if not any(fnmatchcase(c.id, p) for c in checks_)]
+    idle = [p for p in patterns if not any(fnmatchcase(c.id, p.removeprefix("!")) for c in checks_)]
     if idle:
         raise LookupError(f"no case of the suite matches {', '.join(idle)}")
-    return tuple(c for c in checks_ if not patterns or any(fnmatchcase(c.id, p) for p in patterns))
+    out = [p[1:] for p in patterns if p.startswith("!")]
+    into = [p for p in patterns if not p.startswith("!")] or ["*"]
+    chosen = (c for c in checks_ if any(fnmatchcase(c.id, p) for p in into))
+    found = tuple(c for c in chosen if not any(fnmatchcase(c.id, p) for p in out))
+    if not found:
+        raise LookupError(f"{', '.join(patterns)} leave no case of the suite")
+    return found
 
 
 def run(solver: SolverUnderTest, globs: Iterable[str] = ()) -> list[Result]:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from verification.cli import main
-from verification.cli.suite_report import unseen_faults
+from verification.cli.suite_report import likely_faults, unseen_faults
 from verification.cli.suite_run import _source, add_options
 from verification.framework.case import Status
 from verification.solver_suite import own
@@ -69,7 +69,10 @@ def test_the_command_line_states_units_and_where_an_answer_is_off(rival: Path, c
     printed = " ".join(capfd.readouterr().out.split())
     assert "1e+08 > 2 claims" in printed
     assert "1 > 0.001 relative" in printed
-    assert "Found: carries 2 of the right load; farthest off is element [" in printed
+    assert "Found: 1e+08 > 2 claims; carries 2 of the right load; farthest off is element [" in printed
+    assert "Found: 1 > 0.001 relative; 2.00" in printed
+    assert "Meant to catch" not in printed
+    assert "fail: 1 % modulus error (2 of 2), modulus with E instead of 2E (2 of 2), lost" in printed
 
 
 def test_the_command_line_runs_a_solver(rival: Path, capfd: Capture) -> None:
@@ -156,6 +159,16 @@ def test_the_whole_suite_names_the_faults_that_it_did_not_look_for(capfd: Captur
     assert unseen_faults(check.case(own.solve).result(Status.PASS, "", 0.0) for check in suite()) == []
 
 
+@pytest.mark.parametrize("fault", FAULTY, ids=str)
+def test_a_fault_that_fails_where_it_is_named_is_listed_first(fault: Fault) -> None:
+    """Or second, behind another one that the same cases name."""
+    statuses = {check: Status.FAIL if fault in check.catches else Status.PASS for check in suite()}
+    results = [check.case(own.solve).result(status, "", 0.0) for check, status in statuses.items()]
+    named = sum(status is Status.FAIL for status in statuses.values())
+    assert f"{fault} ({named} of {named})" in likely_faults(results)[:2]
+    assert likely_faults(result for result in results if result.status == "pass") == []
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
@@ -174,6 +187,7 @@ def test_the_whole_suite_names_the_faults_that_it_did_not_look_for(capfd: Captur
         (["--solver", "rival_solver:solve", "--largest", "0"], "largest"),
         (["--solver", "rival_solver:solve", "--precision", "0.1"], "precision"),
         (["--solver", "rival_solver:solve", "--only", "hertz/*"], "no case of the suite matches"),
+        (["--solver", "rival_solver:solve", "--only", "!*"], "!* leave no case of the suite"),
         (["--exec", "solve 'it"], '--exec = "solve \'it": expected a command (No closing quotation)'),
         (["--exec", ""], "--exec = '': expected a command\n"),
         (["--exec", "./missing --fast"], "--exec = './missing --fast': expected a command whose first word"),
@@ -206,6 +220,8 @@ def test_bad_usage_is_refused_in_one_line(
 def test_the_suite_and_the_self_test_can_be_listed(capfd: Capture) -> None:
     assert main(["verify", "--solver", "not.imported:here", "--list"]) == 0
     assert "contestant/trailing-shift" in capfd.readouterr().out
+    assert main(["verify", "--solver", "not.imported:here", "--only", "!*/design-*", "--list"]) == 0
+    assert capfd.readouterr().out.count("contestant/") == sum("/design-" not in c.id for c in suite())
     assert main(["verify", "--self-test", "--list"]) == 0
     listed = capfd.readouterr().out.splitlines()
     assert len([line for line in listed if "contestants/catches-" in line]) == len(FAULTY)

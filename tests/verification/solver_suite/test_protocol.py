@@ -278,7 +278,7 @@ def test_of_what_a_program_says_only_the_end_is_read() -> None:
 def test_a_program_that_answers_wrongly_fails() -> None:
     wrong = Command(("sh", "-c", "cp $0/gap.csv $0/pressure.csv"), Abilities(), timeout=5.0)
     (result,) = run(wrong, ["contestant/one-element"])
-    assert (result.status, result.note) == ("fail", "")
+    assert (result.status, result.note) == ("fail", "load (N) 0.46875; exact 445553.0")
 
 
 def test_a_command_is_split_as_a_shell_does() -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from verification.framework.case import Measured
 from verification.solver_suite import reference_solution
 from verification.solver_suite.check import CLAIMS, Check, Entrant, Judge, Pressed
-from verification.solver_suite.checks.residuals import PERIODIC_SOURCE, SOURCE, held, judged
+from verification.solver_suite.checks.residuals import PERIODIC_SOURCE, SOURCE, held, judged, worst_in_turn
 from verification.solver_suite.design import further_rows, in_turn, posed, rows, seed_of
 
 
@@ -28,11 +28,9 @@ def _judged(entrant: Entrant, pressed: Pressed) -> Measured:
 
 
 def _covered(row: Mapping[str, Any], seed: int) -> Judge:
-    def judge(entrant: Entrant) -> Measured:
-        answers = [entrant.pose(posed(each, seed, entrant.claim)) for each in in_turn(row)]
-        return max((_judged(entrant, each) for each in answers), key=lambda found: found.value)
-
-    return judge
+    return lambda entrant: worst_in_turn(
+        entrant, [entrant.pose(posed(each, seed, entrant.claim)) for each in in_turn(row)], _judged
+    )
 
 
 def _checks(designs: Mapping[str, Sequence[dict[str, Any]]]) -> tuple[Check, ...]:

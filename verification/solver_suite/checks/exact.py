@@ -41,7 +41,7 @@ def _one_element(entrant: Entrant) -> Measured:
     pressed = entrant.press(gap, 1.0, approach=1e-3)
     exact = 1e-3 * np.pi * MODULUS * 0.25 / float(4 * mp.asinh(1))
     off = abs(pressed.load / exact - 1) / entrant.claim
-    return Measured(off, unit=CLAIMS, data={"P": pressed.load, "exact": exact})
+    return Measured(off, unit=CLAIMS, data={"load (N)": pressed.load, "exact": exact})
 
 
 def _square_patch(entrant: Entrant) -> Measured:

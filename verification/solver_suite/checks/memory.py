@@ -10,11 +10,18 @@ from __future__ import annotations
 from typing import Any
 
 from refimpl.grid import Array
-from verification.framework.case import Measured
-from verification.solver_suite.check import CLAIMS, COMPLIANCE, MODULUS, Entrant, Judge, Press, pressing
+from verification.solver_suite.check import COMPLIANCE, MODULUS, Judge, Press, pressing
 from verification.solver_suite.check import Fault as F
 from verification.solver_suite.checks.invariance import LIGHT, LOAD
-from verification.solver_suite.checks.residuals import ALWAYS, PERIODIC_SOURCE, SIGN, SOURCE, held, wavy
+from verification.solver_suite.checks.residuals import (
+    ALWAYS,
+    PERIODIC_SOURCE,
+    SIGN,
+    SOURCE,
+    held,
+    wavy,
+    worst_in_turn,
+)
 from verification.solver_suite.gaps import rough_bump
 from verification.solver_suite.protocol import Coupling
 
@@ -35,14 +42,8 @@ FRICTION = [
 
 
 def in_turn(*problems: Press) -> Judge:
-    """Return the judge of several problems by the worst of their residuals; its note names the problem."""
-
-    def judge(entrant: Entrant) -> Measured:
-        found = [entrant.residual(press(entrant)) for press in problems]
-        most = max(found)
-        return Measured(most, unit=CLAIMS, note=f"problem {found.index(most) + 1} of {len(found)}")
-
-    return judge
+    """Return the judge of several problems by the worst of their residuals."""
+    return lambda entrant: worst_in_turn(entrant, [press(entrant) for press in problems])
 
 
 def loads(gap: Array, other: Array, **how: Any) -> Judge:

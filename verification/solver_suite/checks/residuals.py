@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -22,7 +24,7 @@ from verification.solver_suite.check import (
 )
 from verification.solver_suite.check import Fault as F
 from verification.solver_suite.gaps import rough_bump, waves
-from verification.solver_suite.protocol import Coupling
+from verification.solver_suite.protocol import ContactProblem, Coupling
 
 SOURCE = "the contact conditions themselves, with displacements by dense matrices of the textbook's formulas"
 PERIODIC_SOURCE = "the contact conditions themselves, with displacements by the exact Fourier symbols"
@@ -40,6 +42,7 @@ OF_NUMBERS = (
     F.DISPLACEMENT_OF_CONTACT,
 )
 """Faults of numbers beside the pressures, which every case judges where a solver returns them."""
+FIELDS = fields(ContactProblem)
 LOADS = (0.001, 0.01, 0.05)
 """Load (N) over E* times the unit square: from a few peaks to half the elements."""
 
@@ -47,8 +50,23 @@ LOADS = (0.001, 0.01, 0.05)
 def judged(entrant: Entrant, pressed: Pressed) -> Measured:
     """The worst residual in claims, with all three in the note."""
     parts = reference_solution.residual(pressed.problem, pressed.pressure)
-    note = f"gap {parts.gap:.1e}, balance {parts.balance:.1e}, tension {parts.tension:.1e}"
-    return Measured(entrant.residual(pressed), unit=CLAIMS, note=note)
+    gap, balance, tension = (f"{part:.1e}" for part in parts)
+    note = f"complementarity gap {gap}, load balance {balance}, tension {tension}"
+    return Measured(parts.worst / entrant.claim, unit=CLAIMS, note=note)
+
+
+def worst_in_turn(
+    entrant: Entrant, answers: Sequence[Pressed], judge: Callable[[Entrant, Pressed], Measured] = judged
+) -> Measured:
+    """The worst of problems in turn; the note names it and the fields changed from the one before."""
+    found = [judge(entrant, each) for each in answers]
+    k = max(range(len(found)), key=lambda k: found[k].value)
+    which = f"problem {k + 1} of {len(found)}" if len(found) > 1 else ""
+    if k:
+        pairs = [(f.name, *(getattr(answers[i].problem, f.name) for i in (k - 1, k))) for f in FIELDS]
+        changed = [name for name, old, new in pairs if not np.array_equal(old, new)]
+        which += f", {' and '.join(changed)} changed"
+    return replace(found[k], note=": ".join(filter(None, (which, found[k].note))))
 
 
 def residual(gap: Array, side: Side = 1.0, **how: Any) -> Judge:
@@ -88,13 +106,14 @@ def _load_balance(entrant: Entrant) -> Measured:
     gap, loads = rough_bump(24, seed=7), [share * MODULUS for share in LOADS]
     found = [entrant.press(gap, 1.0, load=load).load for load in loads]
     worst = max(abs(carried / load - 1) for carried, load in zip(found, loads, strict=True))
-    return Measured(worst / entrant.claim, unit=CLAIMS, data={"asked": loads, "carried": found})
+    return Measured(worst / entrant.claim, unit=CLAIMS, data={"loads asked (N)": loads, "carried": found})
 
 
 def _no_tension(entrant: Entrant) -> Measured:
     pressed = entrant.press(rough_bump(24, seed=8), 1.0, load=0.02 * MODULUS)
+    found = judged(entrant, pressed)
     tension = reference_solution.residual(pressed.problem, pressed.pressure).tension
-    return Measured(tension / entrant.claim, unit=CLAIMS)
+    return replace(found, value=tension / entrant.claim)
 
 
 # fmt: off
