@@ -1,4 +1,4 @@
-"""How numbers of one grid scatter: counts along edges of the contact, of its gaps and of yielded elements."""
+"""Scatter of one grid's numbers: counts along edges of the contact, of its gaps and of yielded elements."""
 
 from __future__ import annotations
 
