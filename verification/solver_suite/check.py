@@ -171,10 +171,6 @@ class Entrant:
         note = which + difference(answers[worst][0].pressure, answers[worst][1])
         return Measured(misfits[worst], unit=CLAIMS, note=note)
 
-    def residual(self, pressed: Pressed) -> float:
-        """The worst of the recomputed residuals, in units of the claim."""
-        return reference_solution.residual(pressed.problem, pressed.pressure).worst / self.claim
-
 
 def difference(found: Array, exact: Array) -> str:
     """In words: the load that is carried, if another one, and the element that is farthest off.
