@@ -104,15 +104,15 @@ def test_a_law_without_its_limit_is_the_papers() -> None:
 
 
 def test_a_law_with_a_limit_is_solved_corrected_and_summarised() -> None:
-    """No element carries more than the limit; the excess of the same contact edge carries the same jump."""
+    """No element carries more than the limit; its contact edge's excess carries the same jump."""
     most = 1.2e6
     s, papers = (solve(scene(law), grid=32) for law in (Limited(limit=most), scene().friction))
     assert s.converged
     assert s.traction.max() == most
     assert most * s.contact_area > s.friction_force > 0.3e6 * s.contact_area
     np.testing.assert_array_equal(s.contact, papers.contact)
-    excess = papers.friction_coefficient - papers.friction_coefficient_corrected
-    assert s.friction_coefficient - s.friction_coefficient_corrected == pytest.approx(excess, rel=1e-6)
+    taken_off = s.friction_coefficient - s.friction_coefficient_corrected
+    assert taken_off == pytest.approx(papers.features.dmu_dA * s.features.excess, rel=1e-6)
     assert (
         json.loads(json.dumps(s.summary(), allow_nan=False))["friction_coefficient"] == s.friction_coefficient
     )
