@@ -51,17 +51,6 @@ def test_full_contact_is_westergaards(method: str, excess: float) -> None:
     assert abs(solution.approach) <= 1e-11 * 1e-6
 
 
-@pytest.mark.parametrize("share", [0.3, 0.9, 0.96])  # the lowest centre lies at cos(165 deg) = -0.966
-def test_both_solvers_agree_up_to_full_contact(share: float) -> None:
-    _, _, part = wavy(1.0)
-    scene, _, _ = wavy(share * part)
-    dense, fft = (rf.solve(scene, M, method=m, oblique=False, tolerance=1e-12) for m in ("dense", "fft"))
-    assert np.array_equal(dense.contact, fft.contact)
-    assert np.abs(dense.pressure - fft.pressure).max() <= 1e-11 * dense.max_pressure
-    back = rf.solve(scene, M, method="dense", oblique=False, approach=dense.approach)
-    assert np.abs(dense.pressure - back.pressure).max() <= 1e-9 * dense.max_pressure
-
-
 POLYMER = rf.Material(3e9, 0.4)
 
 
