@@ -47,6 +47,8 @@ def values(hint: Any, known: Known) -> st.SearchStrategy[Any]:
         return simple[hint]
     if is_dataclass(hint) and isinstance(hint, type):
         return instances(hint, known)
+    if isinstance(hint, type) and hasattr(hint, "_fields"):  # a named tuple
+        return st.builds(hint, *(values(one, known) for one in get_type_hints(hint).values()))
     origin, inner = get_origin(hint), get_args(hint)
     if origin in (Union, types.UnionType):
         return st.one_of(*(values(one, known) for one in inner if one is not type(None)))

@@ -40,9 +40,9 @@ where it was; runs that the store has are not done again. Exit status 1 when a r
 message is shown, or did not converge: then its row says so by its status.
 
   scene = "table1-rough"      # a shipped scene, or a scene file relative to this file
-  realisations = 75           # number per random roughness; seeds from first_seed (default 1; with one
-                              #   realisation the scene's own).
-                              #   Without such a roughness (smooth, measured) there is one alone
+  realisations = 75           # number per random roughness; seeds from first_seed (default 1;
+                              #   with one realisation the scene's own). Without such a
+                              #   roughness (smooth, measured) there is one alone
   normalise = true            # scale each realisation to its rms (default: as the scene says)
   [vary]                      # any of: grid load upper_rms lower_rms correlation_length tau beta
   grid = [128, 256]           #   sliding_direction sliding_offset (SI, rad), and by full name

@@ -21,7 +21,7 @@ import numpy as np
 
 from refimpl.grid import Mask
 from verification.enclosures.scenes import SIDE, EnclosedScene
-from verification.framework.case import Unavailable
+from verification.exact.kernel_reference import arb
 
 BITS = 256
 """Working precision. Corner sums on 12 elements lose some 10 bits, the linear solution some 10 more."""
@@ -53,15 +53,6 @@ def prove(known: EnclosedScene, contact: Mask) -> Proof:
     flint = arb()
     with flint.ctx.workprec(BITS):
         return _Balls(known, contact).proof()
-
-
-def arb() -> Any:
-    """The python-flint module."""
-    try:
-        import flint
-    except ImportError as missing:
-        raise Unavailable("python-flint is not installed (extra 'rigorous')") from missing
-    return flint
 
 
 class _Balls:

@@ -19,8 +19,9 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array, Mask
-from verification.enclosures.proof import BITS, Ball, Proof, arb
+from verification.enclosures.proof import BITS, Ball, Proof
 from verification.enclosures.scenes import SIDE, EnclosedScene
+from verification.exact.kernel_reference import arb
 from verification.framework.files import to_json, write_text
 from verification.framework.provenance import provenance
 

@@ -116,7 +116,7 @@ def normal_enclosure(x: float, y: float, dx: float, dy: float) -> Any:
     From each corner the signed rectangle to the field point is, in polar coordinates about the latter, the
     integral of the distance ``X sec(theta)`` to its sides. Raises ``Unavailable`` without python-flint.
     """
-    flint = _flint()
+    flint = arb()
 
     def secant_integral(angle: Any) -> Any:
         return flint.acb.integral(lambda theta, _: 1 / theta.cos(), 0, flint.acb(angle)).real
@@ -139,7 +139,7 @@ def tangential_enclosure(x: float, y: float, dx: float, dy: float) -> Any:
     ``s/rho^2 = Re 1/z`` with ``z = s + it``, whose antiderivative over s and t is ``-i z (log z - 1)``. The
     branch cut is kept away by moving an end at ``s < 0`` to ``-s``, between which the integrand is odd.
     """
-    flint = _flint()
+    flint = arb()
 
     def corner(X: Any, Y: Any) -> Any:
         z = flint.acb(abs(X), Y)
@@ -150,7 +150,7 @@ def tangential_enclosure(x: float, y: float, dx: float, dy: float) -> Any:
 
 def _enclose(corner: Corner, x: float, y: float, dx: float, dy: float) -> Any:
     """Ball arithmetic over the corners, in doubled precision until the ball is small."""
-    flint = _flint()
+    flint = arb()
     bits = 128
     while True:
         with flint.ctx.workprec(bits):
@@ -173,13 +173,14 @@ def relative_error(value: float, exact: Any) -> float:
 
 def relative_distance(value: float, ball: Any) -> float:
     """Upper bound on the relative error of ``value``, whatever point of the ball is the exact one."""
-    flint = _flint()
+    flint = arb()
     with flint.ctx.workprec(256):
         error = abs((flint.arb(value) - ball) / ball)
         return float(error.upper())
 
 
-def _flint() -> Any:
+def arb() -> Any:
+    """Return python-flint. Raises ``Unavailable`` where it is not installed."""
     try:
         import flint
     except ImportError as missing:

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 import refimpl as rf
 from refimpl.grid import Array
+from verification.exact.textbook import normal_matrix, shear_matrix
 from verification.scenes.cross_checks import POLYMER, STEEL
-from verification.stress_tests.exact_operators import normal, tangential
 from verification.stress_tests.judge import SOLVERS
 
 M = 3
@@ -56,9 +56,8 @@ def scene(seed: int, tau: float, *, soft_below: bool = True) -> rf.Scene:
 def lawful_states(scene: rf.Scene) -> list[NDArray[np.bool_]]:
     """All lawful contact sets, each as ``(M, M)``."""
     grid, pair = scene.grid(M), scene.materials
-    a = pair.normal_compliance * normal(M, False).astype(float) * grid.element_size
-    x, y = (c.astype(float) * grid.element_size for c in tangential(M, False))
-    c = pair.shear_compliance * (np.cos(scene.sliding_direction) * x + np.sin(scene.sliding_direction) * y)
+    a = pair.normal_compliance * normal_matrix(grid)
+    c = pair.shear_compliance * shear_matrix(grid, scene.sliding_direction)
     lower, upper = scene.heights(grid)
     h = (upper - lower - (upper - lower).min()).ravel()
     target = scene.load / grid.element_area

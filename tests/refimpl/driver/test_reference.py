@@ -23,16 +23,6 @@ def rough(lower: rf.Material, height: float, load: float, seed: int) -> rf.Scene
     return rf.Scene(upper, rf.Body(lower, heights), friction, load=load, side=SIDE, sliding_direction=0.7)
 
 
-@pytest.mark.parametrize("approach", [None, 3e-6])
-def test_facet_tractions_are_solved_for(approach: float | None) -> None:
-    """The certificate recomputes Eq. (7) with the facets' tractions from the arrays, by other code."""
-    scene = rough(rf.Material(1e9, 0.2), 4e-5, 3.0, seed=4)
-    solution = rf.solve(scene, 5, method="dense", approach=approach, slope_correction=True, tolerance=1e-11)
-    assert solution.contact.sum() > 1
-    assert np.abs(solution.slopes.tan_x).max() > 0.05
-    assert solution.status is rf.Status.CONVERGED
-
-
 @pytest.mark.parametrize("oblique", [False, True])
 def test_the_plastic_indentation_is_measured_from_elements_below_the_hardness(oblique: bool) -> None:
     """Between 0 and H all have v = d; an element at H is (d - v) cos cos deep, whatever the load on it."""

@@ -63,14 +63,6 @@ def test_shares_and_ratios_of_a_pair() -> None:
     assert pair.tilts(1e6) == pytest.approx(tilts, rel=1e-15)
 
 
-@pytest.mark.parametrize(
-    ("nu", "compliance"), [(-0.999, 6.36301e-13), (0.0, 3.18310e-10), (0.5, 2.38732e-10)]
-)
-def test_the_whole_range_of_nu_is_allowed(nu: float, compliance: float) -> None:
-    """(1 - nu^2) / (pi E): 0.001999, 1 and 3/4 of 1 / pi per GPa."""
-    assert Material(E=1e9, nu=nu).normal_compliance == pytest.approx(compliance, rel=1e-5, abs=0)
-
-
 def test_the_softer_body_is_the_one_of_less_hardness() -> None:
     hard, soft, none = (Material(E=2e9, nu=0.25, hardness=H) for H in (90e6, 50e6, None))
     for lower, upper, expected in (

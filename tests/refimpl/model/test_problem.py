@@ -17,7 +17,6 @@ from refimpl.model.forces import (
     facet_resultants,
     friction_coefficient,
     perimeter_corrected_area,
-    plasticity_index,
     resultants,
 )
 from refimpl.model.materials import Pair
@@ -308,7 +307,3 @@ def test_what_the_correction_subtracts_of_a_disc(M: int, N: int) -> None:
 def test_the_friction_coefficient_is_the_force_over_the_load() -> None:
     assert friction_coefficient(7.0, 70.0) == pytest.approx(0.1, rel=1e-15)
     assert math.isnan(friction_coefficient(0.0, 0.0))
-
-
-def test_the_plasticity_index_is_eq_12() -> None:
-    assert plasticity_index(1e11, 1e9, 1e-6, 1e-4) == pytest.approx(2.2)

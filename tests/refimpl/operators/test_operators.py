@@ -145,26 +145,6 @@ def test_periodic_waves_have_the_half_space_symbols(k: int, m: int, grid: Grid) 
         np.testing.assert_allclose(operator.shear(np.cos(phase)), expected, atol=2e-15)
 
 
-@pytest.mark.parametrize("aspect", [1, 2])
-def test_periodic_images_far_apart_are_the_aperiodic_operator(aspect: int) -> None:
-    """A smooth traction without resultant or moment hardly feels its images.
-
-    Far fields fall as rho^-3, so images a period off an extent of a tenth of it give 1e-3 of the near field.
-    Elements against band-limited interpolation differ at second order, (h/w)^2/4 measured for the shear:
-    4e-3 for a width of w = 8 h.
-    """
-    M, width = 256, 8.0
-    x, y = np.arange(M) - M / 2, aspect * (np.arange(M // aspect) - M / 2 / aspect)
-    r2 = (x[:, None] ** 2 + y[None, :] ** 2) / (2 * (aspect * width) ** 2)
-    source = (1 - r2) * np.exp(-r2)
-    alone, wide = (
-        window_influence(Grid(source.shape, (1.0, 1.0), repeats), 0.7) for repeats in (False, True)
-    )
-    for kind in KINDS:
-        images, single = getattr(wide, kind)(source), getattr(alone, kind)(source)
-        assert np.abs(images - single).max() <= 5e-3 * np.abs(single).max()
-
-
 def test_one_place_chooses_free_or_periodic() -> None:
     """A periodic grid is its own window; a free one has any."""
     grid, window = Grid((6, 4), (1.0, 1.0)), Window(1, 3, 0, 4)

@@ -95,14 +95,6 @@ def test_a_scene_file_has_neither(part: str) -> None:
         rf.scene_to_toml(own)
 
 
-def test_a_law_without_its_limit_is_the_papers() -> None:
-    """The same law through the held traction of a law that is not linear: to the solver's tolerance."""
-    papers, own = (solve(scene(law), grid=32, tolerance=1e-10) for law in (scene().friction, Limited()))
-    assert own.converged
-    for name in ("friction_coefficient", "friction_coefficient_corrected", "contact_area"):
-        assert getattr(own, name) == pytest.approx(getattr(papers, name), rel=1e-8)
-
-
 def test_a_law_with_a_limit_is_solved_corrected_and_summarised() -> None:
     """No element carries more than the limit; its contact edge's excess carries the same jump."""
     most = 1.2e6

@@ -157,19 +157,6 @@ def test_points_of_data_between_elements(M: int, points: float | None) -> None:
     assert (warned and warned.number) == points
 
 
-def test_an_alternating_contact_edge_under_tau() -> None:
-    scene = replace(
-        rough(0.504e-6, rf.Material(2.5e9, 0.38)),
-        upper=rf.Body(STEEL, BALL),
-        friction=rf.Friction(60e6, 0.3),
-        load=30.0,
-    )
-    s = rf.solve(scene, 23, tolerance=1e-11)
-    assert s.status is rf.Status.CYCLED
-    assert named(s)[Limit.ACTIVE_SET].number == np.count_nonzero(s.excluded & s.contact) > 0
-    assert Limit.ACTIVE_SET not in named(rf.solve(SMOOTH, 23))
-
-
 def test_a_neglected_term_that_matters() -> None:
     s = rf.solve(SMOOTH, 32)
     assert Limit.NEGLECTED not in named(s)

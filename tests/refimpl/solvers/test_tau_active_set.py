@@ -260,16 +260,6 @@ def test_the_active_set_does_not_depend_on_the_start(seed: int, start: int, obli
     assert np.abs(one.pressure - other.pressure).max() <= 1e-5 * one.pressure.max()
 
 
-@pytest.mark.parametrize("seed", [2031, 2047, 2071])
-def test_the_active_set_is_that_of_the_dense_reference(seed: int) -> None:
-    """And excluded elements; scenes whose contact edge cannot keep tau, on this grid or finer ones."""
-    by_fft, dense = (rf.solve(study.random_scene(seed).scene, 32, method=m) for m in ("fft", "dense"))
-    assert by_fft.status is dense.status
-    assert np.array_equal(by_fft.excluded, dense.excluded)
-    assert np.array_equal(by_fft.traction > 0, dense.traction > 0)
-    assert by_fft.friction_coefficient == pytest.approx(dense.friction_coefficient, rel=1e-8)
-
-
 def test_grid_accuracy_and_start_agree() -> None:
     scene = replace(random_scene(3), friction=rf.Friction(tau=1e7, beta=0.1))
     by_accuracy = rf.solve(scene, accuracy=0.05)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
 
 import numpy as np
@@ -14,10 +13,8 @@ from refimpl.solvers.paper import _Scheme
 from verification.cases.paper import iterations, scheme
 from verification.cases.solvers import variational
 from verification.cases.solvers.variational import (
-    MINIMISERS,
     PRINTED_HOURS,
     Contact,
-    Energy,
     growth,
     timed,
 )
@@ -26,48 +23,6 @@ from verification.framework.registry import find
 from verification.scenes.cross_checks import Trial, pressed
 
 APPROACH = 1.6e-6  # m
-
-
-def by_enumeration(A: np.ndarray, depth: np.ndarray) -> np.ndarray:
-    """The complementary solution among all supports: no solver, only linear algebra and signs."""
-    n = len(depth)
-    for chosen in itertools.product((False, True), repeat=n):
-        loaded = np.array(chosen)
-        x = np.zeros(n)
-        x[loaded] = np.linalg.solve(A[np.ix_(loaded, loaded)], depth[loaded])
-        if np.all(x >= 0) and np.all(A @ x >= depth - 1e-12):
-            return x
-    raise AssertionError("no support is complementary")
-
-
-@pytest.mark.parametrize(("name", "tolerance"), [("NNLS", 1e-13), ("L-BFGS-B", 1e-5)])
-def test_minimisers_against_enumeration(name: str, tolerance: float) -> None:
-    """Tolerances as in the cases, with fewer unknowns."""
-    small = Energy.on(5, APPROACH)
-    assert 5 < len(small.depth) < 16
-    exact = by_enumeration(small.matrix(), small.depth)
-    assert 0 < np.count_nonzero(exact) < len(exact)
-    assert np.abs(MINIMISERS[name](small) - exact).max() <= tolerance * exact.max()
-
-
-def test_matrix_and_product_are_one_operator() -> None:
-    energy = Energy.on(12, APPROACH)
-    x = np.random.default_rng(1).standard_normal(len(energy.depth))
-    A = energy.matrix()
-    assert np.array_equal(A, A.T)
-    assert np.allclose(A @ x, energy.apply(x), rtol=0, atol=1e-13 * np.abs(A @ x).max())
-    # sum of centre coefficients: I[1/rho] of a unit square at its centre is 4 asinh(1)
-    assert A[0, 0] == pytest.approx(4 * np.arcsinh(1.0), rel=1e-14)
-
-
-def test_no_element_outside_the_interference_is_loaded() -> None:
-    """Restricting the unknowns loses nothing: with all elements as unknowns the minimum is the same."""
-    energy = Energy.on(12, APPROACH)
-    everywhere = Energy(energy.problem, APPROACH)
-    everywhere.__dict__["interference"] = np.ones_like(energy.interference)
-    assert len(everywhere.depth) == 144 > len(energy.depth)
-    whole, part = (e.pressure(MINIMISERS["NNLS"](e)) for e in (everywhere, energy))
-    assert np.abs(whole - part).max() <= 1e-12 * whole.max()
 
 
 @pytest.fixture

@@ -184,7 +184,7 @@ def test_a_closed_pipe_ends_quietly_and_costs_no_file(name: str, tmp_path: Path)
     [
         "solve hertz --grid 8",
         "sweep study.toml",
-        "verify --only kernels/normal-50-digits",
+        pytest.param("verify --only kernels/normal-50-digits", marks=pytest.mark.nightly),
         pytest.param("report --results r.json --output out", marks=pytest.mark.nightly),
     ],
 )

@@ -67,12 +67,8 @@ COMMANDS = [
     ("inspect heights.npy", "unit, pixel_size"),
     ("inspect heights.npy --unit furlong --pixel-size 1", "unit = 'furlong'"),
     (f"inspect heights.npy {PIXELS} --size inf", "size = inf"),
-    (f"inspect heights.npy {PIXELS} --size nan,1e-6", "size = nan"),
-    (f"inspect heights.npy {PIXELS} --high-pass 1e308", "high_pass = 1e+308"),
     (f"inspect heights.npy {PIXELS} --centre 1e308 --size 1e-6", "centre = 1e+308"),
-    ("inspect heights.npy --unit um --pixel-size 1e308", "pixel_size = 1e+308"),
     ("inspect heights.npy --pixel-size wide", "--pixel-size"),
-    (f"inspect heights.npy {PIXELS} --level cone", "level = 'cone'"),
     (f"inspect heights.npy {PIXELS} --size 1", "at most the measured"),
     (f"inspect heights.npy {PIXELS} --size 1,2,3", "--size"),
     (f"inspect heights.npy {PIXELS} --fit cubist", "--fit"),
@@ -85,20 +81,14 @@ COMMANDS = [
     ("solve hertz --approach 3e-6 --budget", "--approach = 3e-06: expected none with --budget"),
     ("solve hertz -1e-6", "-1e-6"),
     ("solve hertz --accuracy -1e-3", "accuracy = -0.001"),
-    ("solve hertz --accuracy 2", "accuracy = 2"),
     ("solve hertz --accuracy 0.1 --grid 8", "not allowed with"),
-    ("solve hertz --grid -8", "grid = -8"),
     ("solve hertz --grid 0", "grid = 0"),
     ("solve hertz --grid 0 --explain", "grid = 0"),
     ("solve hertz --grid 1000000", "GB"),
     ("solve hertz --grid 48x", "--grid"),
-    ("solve oblong.toml --grid 48x0", "grid = "),
     ("solve hertz --size 1e-3", "--size"),
     ("solve hertz --size 1e-3x0", "size = "),
-    ("solve hertz --size 1e-3x1.01", "size = "),
     ("solve hertz --size nanx1", "size = "),
-    ("solve hertz --grid 8 --method exact", "exact"),
-    ("solve hertz --grid 8 --tolerance -1", "tolerance = -1"),
     ("solve hertz --grid 8 --quantity contact_area", "--quantity = 'contact_area'"),
     ("solve hertz --quantity contact_area", "--quantity = 'contact_area'"),
     ("solve hertz --plastic yes", "expected on or off"),
@@ -148,18 +138,9 @@ def test_what_a_terminal_would_obey_is_escaped() -> None:
     ("text", "old", "new", "says"),
     [
         (SCENE, "load = 5.0", "load = -5.0", "load"),
-        (SCENE, "nu = 0.38", "nu = 0.7", "nu"),
-        (SCENE, "E = 3e9", "E = 0.0", "E = 0.0"),
-        (SCENE, "side = 1e-3", "side = 1e-3\nlaod = 3", "laod"),
         (SCENE, "[friction]", "[friction", "TOML"),
-        (SCENE, '"sphere"', '"cone"', "cone"),
         (SCENE, "[friction]", '[tolerances]\n"upper.colour" = 0.1\n[friction]', "upper.colour"),
-        (OBLONG, "size = ", "side = 1e-3\nsize = ", "size"),
-        (OBLONG, "[2e-3, 1e-3]", "[2e-3]", "size"),
-        (OBLONG, "[2e-3, 1e-3]", "[0.0, 1e-3]", "size"),
         (OBLONG, "[2e-3, 1e-3]", "2e-3", "size"),
-        (OBLONG, "size = [2e-3, 1e-3]", "", "side"),
-        (OBLONG.replace("200e9", '"rigid"'), "E = 3e9", 'E = "rigid"', "rigid"),
         ("load = 1.0\n" + " " * 2**21, "", "", "at most"),
     ],
 )
@@ -171,18 +152,9 @@ def test_scene_files(text: str, old: str, new: str, says: str, tmp_path: Path) -
     assert list(tmp_path.iterdir()) == [path]
 
 
-@pytest.mark.parametrize(
-    ("vary", "says"),
-    [
-        ("grid = [500000, 1000000]", "GB"),
-        ("grid = [8, 16]\ncorrelation_length = [1e-4, 1e-9]", "correlation_length"),
-        ("grid = [8, 16]\nlower_rms = [0.5, 1e-6]", "wrong unit"),
-        ("grid = [8, 16]\nload = [1.0, 1e30]", "load = 1e+30"),
-    ],
-)
-def test_studies_that_no_run_could_pose(vary: str, says: str, folder: Path) -> None:
-    Path("study.toml").write_text(f'scene = "table1-rough"\n[vary]\n{vary}\n')
-    refused("sweep study.toml", says)
+def test_a_study_beyond_the_memory_is_refused_before_its_store_is_made(folder: Path) -> None:
+    Path("study.toml").write_text('scene = "table1-rough"\n[vary]\ngrid = [500000, 1000000]\n')
+    refused("sweep study.toml", "GB")
     assert not Path("study.sqlite").exists()
 
 
@@ -190,11 +162,7 @@ def test_studies_that_no_run_could_pose(vary: str, says: str, folder: Path) -> N
     ("text", "says"),
     [
         ("load,mu,u_mu\n-5,0.1,0.01\n9,0.1,0.01\n", "a positive number"),
-        ("load,mu\n5,0.1\n9,0.1\n", "u_mu"),
-        ("load,mu,u_mu\n5,0.1,0.01\n", "two different loads"),
-        ("load,mu,u_mu\n5,low,0.01\n9,0.1,0.01\n", "finite number"),
         ("load,mu,u_mu\n5,0.1,1e300\n9,0.1,0.01\n", "data line 2: u_mu = 1e+300"),
-        ("load,mu,u_mu\n5,0.1,0.01\n9,1e300,0.01\n", "data line 3: mu = 1e+300"),
         ("load,mu,u_mu\n0.005,0.1,0.01\n9,0.1,0.01\n", "kN"),
     ],
 )

@@ -115,8 +115,3 @@ def test_a_selection_without_cases_is_an_error(make_package: Make, globs: tuple[
     package = make_package(alpha=source("a/1"), beta=source("a/full", tier="full"))
     with pytest.raises(LookupError, match=r"none|a/full"):
         registry.select(registry.load(package), Tier.QUICK, globs)
-
-
-def test_the_real_cases_load_and_their_ids_are_unique() -> None:
-    ids = [c.id for c in registry.load()]
-    assert len(ids) == len(set(ids))

