@@ -39,16 +39,16 @@ EXAMPLES = {
     ),
     "corrected_friction": (
         [],
-        " 64  summed 0.1051, corrected 0.1000 +- 0.0037\n"
-        " 96  summed 0.1043, corrected 0.1012 +- 0.0014\n"
-        "128  summed 0.1036, corrected 0.1014 +- 0.0008\n"
-        "192  summed 0.1024, corrected 0.1010 +- 0.0004\n"
-        "256  summed 0.1021, corrected 0.1011 +- 0.0002\n"
-        "384  summed 0.1016, corrected 0.1009 +- 0.0001",
+        " 64  summed 0.1051, corrected 0.1001 +- 0.0023\n"
+        " 96  summed 0.1043, corrected 0.1009 +- 0.0009\n"
+        "128  summed 0.1036, corrected 0.1011 +- 0.0005\n"
+        "192  summed 0.1024, corrected 0.1011 +- 0.0002\n"
+        "256  summed 0.1021, corrected 0.1011 +- 0.0001\n"
+        "384  summed 0.1016, corrected 0.1011 +- 0.0001",
     ),
     "direction_scan": (
         ["32", "2"],
-        "2 directions, 2 converged\nmu from 0.1362 to 0.1366, Q/P from -0.0011 to +0.0011",
+        "2 directions, 2 converged\nmu from 0.1361 to 0.1362, Q/P from -0.0011 to +0.0011",
     ),
 }
 

@@ -13,7 +13,7 @@ from tests.documents import ROOT, agree
 FOLDER = ROOT / "docs" / "notebooks"
 STATED = {
     "ball_on_rough_flat": """
-        mu = 0.1061 on 80 x 80, converged
+        mu = 0.1056 on 64 x 64, converged
         fine mu = 0.1064, within the bar: True
         A = 0.1243 mm^2 in 27 patches
     """,
