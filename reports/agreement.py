@@ -72,6 +72,7 @@ TABLE3 = (  # case, quantity, factor to the unit, unit; each is printed in tenth
 )
 FINEST = 512  # elements per side of the paper's fine mesh
 
+# lines longer than E501 allows: one printed number a line, as in a table
 SINGLE = (  # part, quantity, label, unit, printed, half a unit, case, key, factor
     ("Table 1", "Hertz, R = 0.14 m", "contact radius a0", "mm", 0.452, 5e-4, "hertz/radius-corrected", "value", 1e3),  # noqa: E501
     ("Table 1", "Hertz, R = 0.14 m", "peak pressure", "MPa", 163.9, 0.05, "hertz/peak-pressure", "value", 1e-6),  # noqa: E501

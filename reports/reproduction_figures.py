@@ -94,7 +94,7 @@ def _fig6d(canvas: Canvas, data: Data) -> None:
 
 
 def _fig7_difference(data: Data) -> dict[str, list[float]]:
-    """What friction changes, which no line's width shows."""
+    """The change by friction, which is thinner than a line."""
     less = _values(data, "flat deformed (um)") - _values(data, "flat deformed, frictionless (um)")
     return {"with less without friction (nm)": list(1e3 * less)}
 

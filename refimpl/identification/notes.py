@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from refimpl.accuracy.digits import usable
 from refimpl.identification.design import MAX_BORDER
 from refimpl.identification.fit import UNLIKELY
 from refimpl.identification.forward import COVERAGE, Response
@@ -104,10 +105,10 @@ def _model(result: Identification) -> Iterator[str]:
     bars = np.array([math.hypot(r.numerical, r.contact_edge) / COVERAGE for r in responses])
     if (wide := int(np.sum(bars > measured))) > 0:
         yield f"error bars of the model exceed the data's uncertainty in {wide} rows: take a finer grid"
-    blind = [k for k, response in enumerate(responses) if response.numerical > response.mu > 0]
+    blind = [k for k, one in enumerate(responses) if one.mu > 0 and not usable(one.numerical, one.mu)]
     if 0 < len(blind) < len(responses):
         named = ", ".join(f"{k + 1} ({result.rows[k].load:.4g} N)" for k in blind)
-        yield f"the model's error bar exceeds mu in row {named}, without weight: check the units, or refine"
+        yield f"the model's error bar exceeds half of mu in row {named}: check the units, or refine"
     if (most := max(response.plastic for response in responses)) > 0:
         yield f"up to {100 * most:.0f} % of the contact is at the hardness: A/P changes little there"
 

@@ -165,7 +165,7 @@ _LAYOUTS = tuple(map(_Layout, (";", "\t", ",", None)))
 
 
 def _layout(path: Path, lines: list[str]) -> tuple[_Layout, int, int]:
-    """How numbers are separated, the table's first line and its width, by the first two lines of numbers.
+    """Find the separator, the table's first line and its width by the first two lines of numbers.
 
     Lines directly above them that look like rows are rows as well.
     """

@@ -77,7 +77,7 @@ def _over(theirs: Sequence[Found], ours: Sequence[Found], clock: str) -> dict[st
 
 
 def _timed(clock: str, theirs: Sequence[Found], ours: Sequence[Found]) -> bool:
-    """Whether both were timed by that clock, in every round."""
+    """True where both have a time by that clock in every round."""
     return bool(ours) and all(one[clock] is not None for one in (*theirs, *ours))
 
 

@@ -34,7 +34,7 @@ def test_full_contact_of_a_free_domain_has_the_order_of_a_punch() -> None:
         assert math.isinf(s.error("max_pressure"))
 
 
-PHASES = (4 * (np.arange(96) + 0.5) / 96) % 1  # of four grooves
+PHASES = (4 * (np.arange(96) + 0.5) / 96) % 1  # places within four equal grooves
 
 
 @pytest.mark.parametrize(

@@ -175,7 +175,7 @@ def test_a_scene_takes_the_filtered_map(tmp_path: Path) -> None:
     told = "\n".join(surface.describe(grid))
     assert all(word in told for word in ("outliers", "below 6e-06", "above 4e-05"))
     table = surface.to_dict()
-    solved = "\n".join(surface.notes(grid))  # what a solution warns of
+    solved = "\n".join(surface.notes(grid))  # among a solution's warnings
     assert all(word in solved for word in ("0 outliers", "below 6e-06", "within half of it, 2e-05 m,"))
     assert (table["low_pass"], table["high_pass"], table["outliers"]) == (6e-6, 40e-6, 9)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 from pathlib import Path
 from types import SimpleNamespace as Made
 from typing import Any
@@ -15,6 +16,7 @@ from reports.result_files import committed, read_result
 from tests.documents import ROOT
 from verification.coverage import class_costs, classes
 from verification.coverage.class_costs import SIZES, costs
+from verification.coverage.class_scenes import CLASSES, scene
 
 
 def test_references_known_values() -> None:
@@ -120,3 +122,20 @@ def test_the_words_of_the_page_follow_from_the_committed_costs() -> None:
     words = f"is {median:.1f} in the median", f"{tail:.1f} at the 90th percentile", f"{most:.0f} at most"
     page = " ".join((ROOT / "docs/error-bars.md").read_text(encoding="utf-8").split())
     assert [each for each in words if each not in page] == []
+
+
+@pytest.mark.nightly
+def test_the_reference_is_where_the_summed_mu_goes() -> None:
+    """Richardson's extrapolation from 512 and 1024 has an error of order h as its only premise.
+
+    Its own scatter is in the differences, in bars on 96 elements: their mean would show the rule's bias.
+    """
+    off = []
+    for kind, seed in product(CLASSES, range(960000, 960003)):
+        coarse, fine, finest = (rf.solve(scene(kind, seed), M) for M in (96, 512, 1024))
+        found, _ = classes.reference(fine, "friction_coefficient")
+        limit = 2 * finest.friction_coefficient - fine.friction_coefficient
+        off.append((found - limit) / coarse.error("friction_coefficient_corrected"))
+    assert abs(np.mean(off)) < 0.05
+    assert np.median(np.abs(off)) < 0.1
+    assert np.quantile(np.abs(off), 0.95) < 0.35

@@ -21,10 +21,8 @@ MOST_SOLVES = 60
 
 def _coverage(tables: TableSet, seeds: range) -> Measured:
     found = summary(study(tables, seeds=seeds))
-    kinds, covered = found["by_kind"].values(), dict(found["coverage"])
-    for name in [name for name in covered if name.endswith("_over_noise")]:  # stands for the one noise drawn
-        covered[name.removesuffix("_over_noise")] = covered[name] = min(kind[name] for kind in kinds)
-    least = min(covered.values())
+    drawn, kinds = found["coverage"], found["by_kind"].values()  # one noise, all noise
+    least = min(*drawn.values(), *(kind[name] for kind in kinds for name in kind if "over_noise" in name))
     wrong = found["wide_without_warning"] + found["narrow_with_warning"]
     failed = found["failures"]
     value = 0.0 if wrong or failed else least
