@@ -1,0 +1,244 @@
+"""Tables of text: separators, missing points, labels, what stands above them, and what is refused."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+import tracemalloc
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import event, settings
+from hypothesis import given as drawn
+from hypothesis import strategies as st
+
+from refimpl.errors import InputError
+from refimpl.measured.readers import read
+from refimpl.measured.text_tables import NOT_MEASURED, read_table
+from tests.refimpl.surfaces import instrument_writers as write
+from tests.refimpl.surfaces.instrument_writers import (
+    BOTH,
+    MAP,
+    NX,
+    NY,
+    PIXEL,
+    same,
+)
+
+
+def test_a_header_that_says_nothing_makes_an_image_as_well(tmp_path: Path) -> None:
+    rows = "\n".join(" ".join(f"{v * 1e6:.6f}" for v in row) for row in MAP.T[::-1])
+    (tmp_path / "map.txt").write_text("exported by an unknown instrument\n" + rows)
+    same(read(tmp_path / "map.txt", unit="um", pixel_size=PIXEL).heights)
+    with pytest.raises(InputError, match=r"both: map\.txt does not state them .*exported by an"):
+        read(tmp_path / "map.txt")
+
+
+@pytest.mark.parametrize("name", ["map.xyz", "map.txt", "map.csv"])
+def test_the_pitch_of_points_is_their_own(tmp_path: Path, name: str) -> None:
+    write.write_xyz(tmp_path / name, MAP)
+    reading = read(tmp_path / name, unit="um")
+    np.testing.assert_allclose(reading.pixel, PIXEL, rtol=1e-12)
+    in_mm = read(tmp_path / name, unit="um", pixel_size=(2e-3, 3e-3))
+    assert in_mm.notes == ("a pixel of 0.002 x 0.003 m is used; the file states 2e-06 x 3e-06 m",)
+    assert read(tmp_path / name, unit="um", pixel_size=(2.01e-6, 3e-6)).pixel == (2.01e-6, 3e-6)
+    for other in ((1e-6, 1e-6), (2.03e-6, 3e-6), (2e-6, 3e-3)):
+        with pytest.raises(InputError, match=r"pixel_size = .*, 2e-06 x 3e-06 m \(in one of the units\)"):
+            read(tmp_path / name, unit="um", pixel_size=other)
+    with pytest.raises(InputError, match="holds points x, y, z and states no unit"):
+        read(tmp_path / name)
+
+
+def test_a_missing_row_of_points_is_missing_points(tmp_path: Path) -> None:
+    i, j = np.nonzero(np.arange(NY) != 5 * np.ones((NX, 1)))
+    points = np.stack([i * 2.0, j * 3.0, (i - 2 * j) / 10], axis=1)
+    np.savetxt(tmp_path / "map.xyz", points)
+    heights = read(tmp_path / "map.xyz", unit="um").heights
+    assert heights.shape == (NX, NY)
+    assert np.isnan(heights[:, 5]).all()
+    assert np.isnan(heights).sum() == NX
+
+
+def test_points_off_a_grid_are_refused_with_a_number(tmp_path: Path) -> None:
+    points = np.random.default_rng(3).random((200, 3))
+    np.savetxt(tmp_path / "map.xyz", points)
+    with pytest.raises(InputError, match="points on a regular grid"):
+        read(tmp_path / "map.xyz", unit="um")
+    grid = np.array([(x, y, 1.0) for x in range(5) for y in range(5)])
+    grid[7, 0] += 0.3
+    np.savetxt(tmp_path / "map.xyz", grid)
+    with pytest.raises(InputError, match="of the pitch in x off it"):
+        read(tmp_path / "map.xyz", unit="um")
+    np.savetxt(tmp_path / "map.xyz", np.vstack([grid, grid])[:, :3] * [0, 1, 1])
+    with pytest.raises(InputError, match="a line scan: all points have one x"):
+        read(tmp_path / "map.xyz", unit="um")
+
+
+@pytest.mark.parametrize(
+    ("separator", "comma"), [(";", True), ("\t", True), (" ", True), (";", False), (",", False)]
+)
+def test_separators_and_decimal_commas(tmp_path: Path, separator: str, comma: bool) -> None:
+    z = np.where(np.isnan(MAP), 0.0, MAP)
+    rows = [separator.join(f"{v * 1e6:.5f}" for v in row) for row in z]
+    text = "\n".join(row.replace(".", ",") if comma else row for row in rows)
+    (tmp_path / "map.csv").write_text(text + "\n")
+    reading = read(tmp_path / "map.csv", unit="um", pixel_size=PIXEL)
+    np.testing.assert_allclose(reading.heights, z, rtol=0, atol=1e-20)
+
+
+@pytest.mark.parametrize("columns", [600, 3])
+def test_a_table_of_text_takes_at_most_four_times_its_numbers(columns: int, tmp_path: Path) -> None:
+    numbers = np.arange(360_000.0).reshape(-1, columns) % 977 / 8
+    np.savetxt(tmp_path / "a.csv", numbers, fmt="%.3f", delimiter=";")
+    tracemalloc.start()
+    found = read_table(tmp_path / "a.csv").rows
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert np.array_equal(found, numbers)
+    assert peak <= 4 * numbers.nbytes
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("x;z\n" + "\n".join(f"{k};{k * k},5" for k in range(20)), "a line scan: 20 rows of 1 columns"),
+        ("\n".join(f"{k / 7} {k / 3}" for k in range(20)), "a map .a line scan: 20 rows of 2 columns"),
+        ("no numbers\nat all\n", "rows of numbers .*it begins with 'no numbers'"),
+        ("1 2 3 4 5\n1 2 3 4 5\n1 2 3\n", "rows of one length and kind .line 3 has 3, the first row 5"),
+    ],
+)
+def test_a_refusal_says_what_was_found(tmp_path: Path, content: str, said: str) -> None:
+    (tmp_path / "a.csv").write_text(content)
+    with pytest.raises(InputError, match=said):
+        read(tmp_path / "a.csv", unit="um", pixel_size=PIXEL)
+
+
+def test_fortrans_exponents_and_rows_counted_from_one(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("\n".join(f"{k}\t{k}.5D-1\t2.5d0\t3.5\t4.5" for k in (1, 2, 3, 4)))
+    assert read(tmp_path / "a.txt", "m", PIXEL).heights[1].tolist() == [0.25, 2.5, 3.5, 4.5]
+
+
+def test_blank_lines_between_blocks_of_points_are_no_end(tmp_path: Path) -> None:
+    blocks = ["\n".join(f"{i} {j} {i - 2 * j}" for j in range(6)) for i in range(5)]
+    (tmp_path / "map.xyz").write_text("\n\n".join(blocks) + "\n")
+    assert read(tmp_path / "map.xyz", unit="um").heights.shape == (5, 6)
+
+
+@pytest.mark.parametrize("name", ["a.csv", "a.xyz"])
+@pytest.mark.parametrize("place", [0, 7, 25])
+@pytest.mark.parametrize("alien", ["lost", "void void void", "1 ? 2", "1 2"])
+def test_a_line_of_the_table_that_is_no_row_is_refused(
+    tmp_path: Path, name: str, place: int, alien: str
+) -> None:
+    rows = [f"{i} {j} {i * j}.5" if name == "a.xyz" else "1.5 2 3" for i in range(5) for j in range(5)]
+    (tmp_path / name).write_text("\n".join([*rows[:place], alien, "", *rows[place:]]))
+    if (place, alien) == (0, "lost"):  # a header
+        assert read_table(tmp_path / name).rows.shape == (25, 3)
+        return
+    with pytest.raises(InputError, match=f"line ({place + 1}|1:|{place + 3})"):
+        read_table(tmp_path / name)
+
+
+@drawn(st.data())
+@settings(deadline=None, max_examples=200)
+def test_random_tables_give_their_numbers_or_a_refusal(data: st.DataObject) -> None:
+    """Separators, missing marks, decimal commas, headers: the numbers, but for an empty first or last column.
+
+    Such a column is no other than a separator at the ends of all lines; it goes with a note.
+    """
+    separator = data.draw(st.sampled_from(["\t", ";", ",", " ", ", "]))
+    comma = data.draw(st.booleans()) if "," not in separator else False
+    marks = [*NOT_MEASURED, "NaN", "BAD", "void", *([""] if separator != " " else [])]
+    shape = data.draw(st.integers(2, 7)), data.draw(st.integers(4, 7))
+    mark = data.draw(st.sampled_from(marks))
+    entry = st.floats(-1e3, 1e3, width=32).map(lambda v: round(v, 3)) | st.sampled_from([math.nan] * 3)
+    z = np.array([[data.draw(entry) for _ in range(shape[1])] for _ in range(shape[0])])
+    head = data.draw(
+        st.sampled_from(["", "Sample: plate 7\n", "# Width: 4 um\n\n", "a;b\nunit;um\n", "a b c d\n"])
+    )
+    lines = [separator.join(mark if math.isnan(v) else repr(float(v)) for v in row) for row in z]
+    text = "\n".join(line.replace(".", ",") if comma else line for line in lines)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "a.txt"
+        path.write_text(head + text + data.draw(st.sampled_from(["", "\n", "\n\n# end\n"])))
+        try:
+            found = read_table(path)
+        except InputError:
+            event("refused")
+            assert mark == "void" or (np.isfinite(z).sum(axis=1) == 0).any() or not _paired(z)
+            return
+    event("read")
+    for side, column in (("last", -1), ("first", 0)):
+        if any(side in note for note in found.notes):
+            assert mark == ""
+            assert np.isnan(z[:, column]).all()
+            z = np.delete(z, column, axis=1)
+    np.testing.assert_array_equal(found.rows, z)
+
+
+def _paired(z: np.ndarray) -> bool:
+    """Two lines of numbers one after the other, or one at the end: where a table is seen to begin."""
+    some = np.isfinite(z).any(axis=1)
+    return bool((some[1:] & some[:-1]).any() or some[-1])
+
+
+@pytest.mark.parametrize("mark", ["***", "--", "", "nan"])
+def test_missing_points_do_not_stretch_an_instruments_map(tmp_path: Path, mark: str) -> None:
+    """As Gwyddion's header, scaled by the width stated there; holes at a corner and in whole lines."""
+    z = MAP.copy()
+    z[0, -1] = z[1:4, 2] = z[:, 3] = np.nan
+    rows = ["\t".join(mark if np.isnan(v) else f"{v:.9g}" for v in row) for row in z.T[::-1]]
+    head = f"# Width: {NX * PIXEL[0] * 1e6} µm\n# Height: {NY * PIXEL[1] * 1e6} µm\n# Value units: m\n"
+    (tmp_path / "map.txt").write_text(head + "\n".join(rows) + "\n")
+    reading = read(tmp_path / "map.txt")
+    np.testing.assert_allclose(reading.heights, z, rtol=0, atol=1e-20)
+    np.testing.assert_allclose(reading.pixel, PIXEL, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("first", "said"),
+    [
+        (";0;1;2;3", ("a leading index row was dropped", "a leading index column was dropped")),
+        ("y;1;2;3;4", ("a leading index row was dropped", "a leading index column was dropped")),
+        (";0.0;0.5;1.0;1.5", "heights without their coordinates"),
+        ("0;0;x;0;0", "line 3: 'x'"),
+        (";;;;", "line 3 has none: write nan"),
+    ],
+)
+def test_labels_and_what_stands_above_a_table(
+    tmp_path: Path, first: str, said: str | tuple[str, ...]
+) -> None:
+    body = [f"{k if isinstance(said, tuple) else k / 2};{k * k}.5;2.5;1.5;{k}.5" for k in range(5)]
+    (tmp_path / "a.csv").write_text("\n".join(["Instrument;profiler;;;", "", first, *body]))
+    if isinstance(said, tuple):
+        found = read_table(tmp_path / "a.csv")
+        assert (found.notes, found.rows.shape) == (said, (5, 4))
+        return
+    with pytest.raises(InputError, match=said):
+        read_table(tmp_path / "a.csv")
+
+
+def test_a_text_of_two_images_gives_either(tmp_path: Path) -> None:
+    write.write_txt(tmp_path / "one.txt", MAP)
+    one = (tmp_path / "one.txt").read_bytes().decode("latin-1")
+    write.write_txt(tmp_path / "one.txt", 2 * MAP)
+    other = (tmp_path / "one.txt").read_bytes().decode("latin-1").replace("Topography", "Retrace")
+    (tmp_path / "two.txt").write_text(one + other)
+    same(read(tmp_path / "two.txt").heights)
+    second = read(tmp_path / "two.txt", channel="Retrace")
+    same(second.heights / 2)
+    assert second.channels == ("Topography", "Retrace")
+    (tmp_path / "two.txt").write_text(one + one)
+    with pytest.raises(InputError, match="one image, or images with names"):
+        read(tmp_path / "two.txt", **BOTH)
+
+
+@pytest.mark.parametrize("encoding", ["latin-1", "utf-8", "utf-8-sig", "utf-16"])
+def test_a_micro_sign_in_any_encoding(tmp_path: Path, encoding: str) -> None:
+    write.write_txt(tmp_path / "map.txt", MAP)
+    text = (tmp_path / "map.txt").read_bytes().decode("latin-1")
+    (tmp_path / "map.txt").write_bytes(text.encode(encoding))
+    reading = read(tmp_path / "map.txt")
+    same(reading.heights)
+    np.testing.assert_allclose(reading.pixel, PIXEL, rtol=1e-12)
