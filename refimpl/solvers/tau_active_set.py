@@ -13,7 +13,8 @@ tau need not be the elements in contact. The rule has two steps.
 
 Elements that are in contact in the final state and not in A carry no adhesive shear: they are ``excluded``.
 
-What this means for the user: the set is a property of the grid, the same for every solver, window and start.
+What this means for the user: the set is a property of the grid, the same for every solver, window and start,
+but for elements whose pressure or clearance is so small that a state before the last leaves it undecided.
 If elements are excluded, mu may differ by as much as tau on them over the load, the part ``active set`` of
 its error bar: typically 4e-4 of mu on 128 x 128 elements of random scenes, and 2e-5 for Table 1's ball on 512
 x 512. If none are, the law holds everywhere; other sets may obey it as well, with a mu that differs by up to
@@ -139,7 +140,8 @@ class TauSolver(Protocol):
     def solve(self, tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
         """Solve with tau on ``active``; return whether the residual meets the tolerance.
 
-        The solver may stop as soon as its contact set is certain and passes the test ``enough``.
+        The solver may stop as soon as its contact set is decided, but for a share of it that falls with the
+        tolerance, and passes the test ``enough``.
         """
 
 

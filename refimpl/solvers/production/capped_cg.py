@@ -76,14 +76,14 @@ class CappedCG(ProjectedCG):
         relative, penetration = contact_residuals(gap, energy, approach, lowest, rounding, float(f.sum()))
         return max(relative, missed), penetration
 
-    def contact_is_certain(self, stiffness: float, among: Mask | None = None) -> bool:
-        """Return what `ProjectedCG` returns where no pressure is at the cap or near it, else False.
+    def undecided(self, stiffness: float, among: Mask | None = None) -> int:
+        """Return what `ProjectedCG` returns where no pressure is at the cap or near it, else all elements.
 
         Load that elements at the cap do not bear may bring others into contact, however small the error of
         the separation on the free ones is.
         """
         below_cap = not self.capped.any() and bool(self._pressing.max(initial=0.0) < _FULL * self._cap)
-        return below_cap and super().contact_is_certain(stiffness, among)
+        return super().undecided(stiffness, among) if below_cap else self.capped.size
 
     def iterate(self) -> None:
         """One step on the free elements, then the exchange of elements at both bounds."""

@@ -127,7 +127,8 @@ class LevelSolver:
     def solve(self, tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
         """Alternate CG and updates until the residual meets the tolerance, with tau on ``active``.
 
-        Stop as soon as the contact set is certain and passes the test ``enough``.
+        Stop as soon as the contact set is decided and passes the test ``enough``: of a gradual set after an
+        update alone, because its shares feed back.
         """
         # mixing of the shares of tau has no bearing on a fixed set
         mixes = self.needs_mixing if self.lagged.active.is_fixed else self._slopes_need_mixing
@@ -178,7 +179,8 @@ class LevelSolver:
         since = 0
         while residual > goal and since < constants.CG_PATIENCE and self.cg_iterations < self._budget:
             # between mixed updates the state solves no problem of its own: its contact is not the rule's
-            if not self.needs_mixing and self._contact_suffices():
+            own = self.lagged.active.is_fixed and not self.needs_mixing
+            if own and self._contact_suffices():
                 break
             self.lagged.iterate()
             self.cg_iterations += 1
@@ -188,12 +190,13 @@ class LevelSolver:
 
     def _contact_suffices(self) -> bool:
         """Whether no more than the contact of the active set's elements is asked of this state, and is
-        certain."""
+        decided but for a small share."""
         if self._enough is None or not self._enough(self.cg.contact):
             return False
         active = self.lagged.active
         among = active.elements if isinstance(active, FixedSet) else None
-        return self.cg.contact_is_certain(self._stiffness, among)
+        share = min(constants.UNDECIDED * self._goal, constants.MOST_UNDECIDED)
+        return self.cg.undecided(self._stiffness, among) <= share * np.count_nonzero(self.cg.contact)
 
     def _status(self) -> Status:
         if self.residual <= self._goal:

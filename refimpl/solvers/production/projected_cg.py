@@ -116,9 +116,9 @@ class ProjectedCG:
         rounding = self._rounding * float(pressing.max(initial=0.0))
         return contact_residuals(gap, energy, approach, lowest, rounding, float(pressing.sum()))
 
-    def contact_is_certain(self, stiffness: float, among: Mask | None = None) -> bool:
-        """Return whether the remaining error of the separation can change no element's contact, ``among``
-        these or all.
+    def undecided(self, stiffness: float, among: Mask | None = None) -> int:
+        """Return of how many elements, ``among`` these or all, the remaining error of the separation can
+        change the contact.
 
         ``stiffness`` is the pressure per displacement of a single element (Pa/m).
         """
@@ -126,7 +126,7 @@ class ProjectedCG:
         margin = CERTAINTY * float((np.abs(v - approach) * self.free).max())
         pressing = self._vectors.scatter_mask(self._pressing > stiffness * margin)
         certain = np.where(self.free, pressing, v > approach + margin)
-        return bool((certain if among is None else certain[among]).all())
+        return int(np.count_nonzero(~certain if among is None else ~certain[among]))
 
     def iterate(self) -> None:
         """One step of projected CG on the contact set, then the exchange of elements.

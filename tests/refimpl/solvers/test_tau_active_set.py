@@ -278,7 +278,7 @@ def test_solves_that_end_early_do_not_change_the_sequence(
     problem = problem_of(scene, 64)
     quick = level_solver(problem)
     short = quick.result(1e-8)
-    monkeypatch.setattr(ProjectedCG, "contact_is_certain", lambda cg, stiffness, among: False)
+    monkeypatch.setattr(ProjectedCG, "undecided", lambda cg, stiffness, among: cg.free.size)
     thorough = level_solver(problem)
     long = thorough.result(1e-8)
     assert short.status is long.status

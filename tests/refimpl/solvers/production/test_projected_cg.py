@@ -138,19 +138,19 @@ def test_steps_are_conjugate_while_the_set_stays(target: float | None, approach:
 
 @pytest.mark.parametrize("misfit", [0.125, -0.125])
 @pytest.mark.parametrize(
-    ("clearance", "stiffness", "certain"),
-    [(0.26, 1.0, True), (0.25, 1.0, False), (1.0, 7.9, True), (1.0, 8.0, False), (0.25, 8.0, False)],
+    ("clearance", "stiffness", "undecided"),
+    [(0.26, 1.0, 0), (0.25, 1.0, 1), (1.0, 7.9, 0), (1.0, 8.0, 1), (0.25, 8.0, 2)],
 )
-def test_contact_is_certain_beyond_twice_the_misfit(
-    misfit: float, clearance: float, stiffness: float, certain: bool
+def test_contact_is_decided_beyond_twice_the_misfit(
+    misfit: float, clearance: float, stiffness: float, undecided: int
 ) -> None:
     """Of an element under a pressure of 2, and of another with that clearance; a third is far away."""
     cg = ProjectedCG(lambda f: f.copy(), lambda r: r.copy(), np.array([[2.0, 0.0, 0.0]]))
     cg.set_problem(
         np.array([[misfit - 1.0, clearance + 1.0, 1e9]]), np.ones((1, 3)), target=None, approach=1.0
     )
-    assert cg.contact_is_certain(stiffness) is certain
-    assert cg.contact_is_certain(stiffness, np.array([[True, False, False]])) is (stiffness < 2 / 0.25)
+    assert cg.undecided(stiffness) == undecided
+    assert cg.undecided(stiffness, np.array([[True, False, False]])) == (stiffness >= 2 / 0.25)
 
 
 def winkler(
@@ -256,10 +256,10 @@ def test_without_free_elements_the_approach_is_the_middle() -> None:
     assert capped_cg([4.0, 4.0], [0.5, 1.0], approach=None).approach == 5.0
 
 
-@pytest.mark.parametrize(("pressure", "certain"), [(1.0, True), (3.7, False), (4.0, False)])
-def test_contact_is_certain_only_well_below_the_cap(pressure: float, certain: bool) -> None:
+@pytest.mark.parametrize(("pressure", "undecided"), [(1.0, 0), (3.7, 2), (4.0, 2)])
+def test_contact_is_decided_only_well_below_the_cap(pressure: float, undecided: int) -> None:
     cg = capped_cg([pressure, 0.0], [1.0, 50.0], approach=pressure + 1.0)
-    assert cg.contact_is_certain(1.0) is certain
+    assert cg.undecided(1.0) == undecided
 
 
 @pytest.mark.parametrize(("gap", "free", "capped"), [(1.5, True, False), (0.5, False, True)])
