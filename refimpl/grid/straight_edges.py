@@ -26,14 +26,15 @@ Steps = Sequence[tuple[tuple[int, int], tuple[int, int]]]  # v and w
 _OUTSIDE = 2
 _SHORTEST = 3  # faces; a shorter run is never longer than those at its ends
 _CROSSING = 2  # faces of a run where an edge crosses the axis
-_REACH = 3  # elements of the longest step along an axis
+_REACH = 3  # elements of the longest step
+_AT_ONCE = 100_000  # elements times steps in one table; larger tables are no quicker
 _AXES: Steps = ((0, 1), (1, 0)), ((1, 0), (0, 1))
-_BETWEEN: tuple[Steps, ...] = (
-    (((1, 1), (0, 1)), ((1, -1), (0, 1))),
-    (((2, 1), (1, 1)), ((2, -1), (1, -1)), ((1, 2), (1, 1)), ((1, -2), (1, -1))),
-    (((3, 1), (1, 0)), ((3, -1), (1, 0)), ((1, 3), (0, 1)), ((1, -3), (0, 1))),
-    (((3, 2), (1, 1)), ((3, -2), (1, -1)), ((2, 3), (1, 1)), ((2, -3), (1, -1))),
-)
+_BETWEEN: Steps = (
+    ((1, 1), (0, 1)), ((1, -1), (0, 1)),
+    ((2, 1), (1, 1)), ((2, -1), (1, -1)), ((1, 2), (1, 1)), ((1, -2), (1, -1)),
+    ((3, 1), (1, 0)), ((3, -1), (1, 0)), ((1, 3), (0, 1)), ((1, -3), (0, 1)),
+    ((3, 2), (1, 1)), ((3, -2), (1, -1)), ((2, 3), (1, 1)), ((2, -3), (1, -1)),
+)  # fmt: skip
 """On a disc the share of direction v in the variance falls as ``|v|^-3``: 2 % at (3, 2)."""
 
 
@@ -72,39 +73,41 @@ def straight_edges(contact: Mask, grid: Grid) -> StraightEdges:
     if field.shape[0] != field.shape[1]:  # between the axes lines close on squares alone
         padding = [(0, max(field.shape) + 1 - count) for count in field.shape]
         field = np.pad(field, padding, constant_values=_OUTSIDE)
-    runs = [axes, *(_Runs(field, near, steps) for steps in _BETWEEN)]
-    straight = np.concatenate([each.excess() for each in runs])
+    several = max(1, _AT_ONCE // near[0].size)
+    between = (_BETWEEN[k : k + several] for k in range(0, len(_BETWEEN), several))
+    straight = np.concatenate([axes.excess(), *(_Runs(field, near, steps).excess() for steps in between)])
     faces = int(axes.beyond(_CROSSING).sum())
     return StraightEdges(faces, int(np.count_nonzero(straight)), int((straight**2).sum()))
 
 
 def _near_edge(contact: Mask) -> Sequence[Indices]:
-    """Return i and j of the elements within `_REACH` of the edge, also across borders."""
-    near = (contact != np.roll(contact, 1, axis=0)) | (contact != np.roll(contact, 1, axis=1))
+    """Return i and j of the elements in contact from which a step may lead out of it, or around a border."""
+    inside = contact
     for axis in (0, 1):
         for shift in (1, _REACH - 1, -_REACH):
-            near |= np.roll(near, shift, axis)
-    return np.divmod(np.flatnonzero(near), contact.shape[1])
+            inside = inside & np.roll(inside, shift, axis)
+    return np.divmod(np.flatnonzero(contact & ~inside), contact.shape[1])
 
 
 def _faces(field: Field, near: Sequence[Indices], v: Indices, w: Indices) -> tuple[Indices, ...]:
-    """Return direction, line t, position s and side of the faces between an element and that at w from it."""
+    """Return direction, line t, position s and side of the faces between an element and that at w from it.
+
+    The side is 0 where the element itself is in contact, 1 where the other is.
+    """
     wide, width = np.pad(field, _REACH, mode="wrap").ravel(), field.shape[1] + 2 * _REACH
     here = (near[0] + _REACH) * width + near[1] + _REACH
-    other = wide[here + (w[0] * width + w[1])[:, None]]
-    found = np.flatnonzero(wide[here] + other == 1)
-    way, place = np.divmod(found, here.size)
+    away = np.multiply.outer(w[0] * width + w[1], [1, -1])[..., None]
+    way, side, place = np.unravel_index(np.flatnonzero(wide[here + away] == 0), (*away.shape[:2], here.size))
     (i, j), v, w = (index[place] for index in near), v.take(way, axis=1), w.take(way, axis=1)
     det = v[0] * w[1] - v[1] * w[0]
-    return way, det * (v[0] * j - v[1] * i), det * (w[1] * i - w[0] * j), other.ravel()[found]
+    return way, det * (v[0] * j - v[1] * i) - side, det * (w[1] * i - w[0] * j), side
 
 
 class _Runs:
     """Runs of faces along v, a row each: direction, line, position and side of its first face, and length.
 
-    Directions are v, w and w, v of each step; side is 0 where the element itself is in contact, 1 where the
-    other is. Lines close: a run that goes on at the beginning of its line has two rows, each with the length
-    of both. The last row of ``last`` and ``length`` is of no run.
+    Directions are v, w and w, v of each step. Lines close: a run that goes on at the beginning of its line
+    has two rows, each with the length of both. The last row of ``last`` and ``length`` is of no run.
     """
 
     def __init__(self, field: Field, near: Sequence[Indices], steps: Steps) -> None:
