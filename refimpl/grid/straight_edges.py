@@ -81,7 +81,7 @@ def straight_edges(contact: Mask, grid: Grid) -> StraightEdges:
 
 
 def _near_edge(contact: Mask) -> Sequence[Indices]:
-    """Return i and j of the elements in contact from which a step may lead out of it, or around a border."""
+    """Return i and j of the elements in contact within `_REACH` of one without, also across a border."""
     inside = contact
     for axis in (0, 1):
         for shift in (1, _REACH - 1, -_REACH):
