@@ -233,10 +233,7 @@ def undecided_area(pressure: Array, grid: Grid) -> float:
     >>> undecided_area(pressure, Grid.square(8.0, 8, periodic=True))
     16.0
     """
-    around = grid.padded(pressure, 1)
-    near = around[2:, 1:-1], around[:-2, 1:-1], around[1:-1, 2:], around[1:-1, :-2]
-    amid = np.minimum.reduce([pressure, *near]) > 0
-    return float(np.count_nonzero(amid & (6 * pressure < sum(near)))) * grid.element_area
+    return float(_undecided(pressure, grid).shape[1]) * grid.element_area
 
 
 def hidden_gap(problem: Problem, state: State) -> float:
@@ -246,18 +243,24 @@ def hidden_gap(problem: Problem, state: State) -> float:
     differences; the pressure missing there opens one element against its neighbours.
     """
     grid, pressure = problem.grid, state.pressure
-    around = grid.padded(pressure, 1)
-    near = around[2:, 1:-1], around[:-2, 1:-1], around[1:-1, 2:], around[1:-1, :-2]
-    few = (6 * pressure < sum(near)) & (np.minimum.reduce([pressure, *near]) > 0)
-    here = pressure[few]
+    here, *near = _undecided(pressure, grid)
     lacking = -here
     for ahead, back in (near[:2], near[2:]):
-        bend = np.maximum(ahead[few] + back[few] - 2 * here, 0)
-        rise = np.minimum(np.abs(ahead[few] - back[few]), bend)
+        bend = np.maximum(ahead + back - 2 * here, 0)
+        rise = np.minimum(np.abs(ahead - back), bend)
         gain = rise * np.divide(rise, 8 * bend, out=np.zeros_like(bend), where=bend > 0)
         lacking = lacking + _TROUGH_ERROR * bend + gain
     opened = float(np.maximum(lacking, 0).sum()) / pressure.size
     return problem.elasticity.element_compliance(grid) * opened
+
+
+def _undecided(pressure: Array, grid: Grid) -> Array:
+    """Pressures of the elements of `undecided_area` and their neighbours along x and y, shape ``(5, n)``."""
+    p = grid.padded(pressure[grid.window_around(pressure > 0, margin=1).slices], 1)
+    five = p[1:-1, 1:-1], p[2:, 1:-1], p[:-2, 1:-1], p[1:-1, 2:], p[1:-1, :-2]
+    amid = np.logical_and.reduce([field > 0 for field in five])
+    found = amid & (6 * five[0] < sum(five[1:]))
+    return np.array([field[found] for field in five])
 
 
 def slope_displacement_error(problem: Problem, state: State) -> float:

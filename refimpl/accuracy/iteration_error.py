@@ -108,7 +108,7 @@ def _peak_misfit(problem: Problem, state: State) -> float:
     """
     if state.max_pressure == 0:
         return 0.0
-    misfit = float(np.abs(state.clearance[state.pressure >= 0.5 * state.max_pressure]).max())
+    misfit = float(np.abs(state.v[state.pressure >= 0.5 * state.max_pressure] - state.approach).max())
     return misfit / problem.elasticity.element_compliance(problem.grid)
 
 

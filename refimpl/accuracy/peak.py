@@ -153,7 +153,7 @@ def _maxima(padded: Array, frame: int, least: float) -> tuple[NDArray[np.intp], 
     maxima: Mask = field >= least
     for neighbour in (padded[back, inner], padded[ahead, inner], padded[inner, back], padded[inner, ahead]):
         maxima &= field >= neighbour
-    i, j = np.nonzero(maxima)
+    i, j = np.divmod(np.flatnonzero(maxima), maxima.shape[1])
     return i + frame, j + frame
 
 

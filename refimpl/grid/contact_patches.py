@@ -36,11 +36,8 @@ def patch_labels(contact: Mask, *, periodic: bool = False) -> NDArray[np.intp]:
         )
         _, patches = scipy.sparse.csgraph.connected_components(touching, directed=False)
         labels = patches[labels]
-    found, numbered = np.unique(labels[contact], return_inverse=True)
-    order = np.empty(len(found), dtype=np.intp)
-    first = np.full(len(found), numbered.size)
-    np.minimum.at(first, numbered, np.arange(numbered.size))
-    order[np.argsort(first)] = np.arange(1, len(found) + 1)
+    _, first, numbered = np.unique(labels[contact], return_index=True, return_inverse=True)
+    order = np.argsort(np.argsort(first)) + 1
     result = np.zeros(contact.shape, dtype=np.intp)
     result[contact] = order[numbered]
     return result

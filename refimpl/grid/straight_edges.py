@@ -10,6 +10,7 @@ far a run is longer than those at its ends: on a strip that is all of it, on a l
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,19 +21,21 @@ from refimpl.grid.grid import Grid
 
 Indices = NDArray[np.intp]
 Field = NDArray[np.int8]  # 1 in contact, 0 without, `_OUTSIDE` beyond the domain
-Step = tuple[int, int]
+Steps = Sequence[tuple[tuple[int, int], tuple[int, int]]]  # v and w
 
 _OUTSIDE = 2
 _SHORTEST = 3  # faces; a shorter run is never longer than those at its ends
 _CROSSING = 2  # faces of a run where an edge crosses the axis
-_AXES: tuple[tuple[Step, Step], ...] = ((0, 1), (1, 0)), ((1, 0), (0, 1))
-_BETWEEN: tuple[tuple[Step, Step], ...] = (
+_REACH = 3  # elements of the longest step
+_AT_ONCE = 100_000  # elements times steps in one table; larger tables are no quicker
+_AXES: Steps = ((0, 1), (1, 0)), ((1, 0), (0, 1))
+_BETWEEN: Steps = (
     ((1, 1), (0, 1)), ((1, -1), (0, 1)),
     ((2, 1), (1, 1)), ((2, -1), (1, -1)), ((1, 2), (1, 1)), ((1, -2), (1, -1)),
     ((3, 1), (1, 0)), ((3, -1), (1, 0)), ((1, 3), (0, 1)), ((1, -3), (0, 1)),
     ((3, 2), (1, 1)), ((3, -2), (1, -1)), ((2, 3), (1, 1)), ((2, -3), (1, -1)),
 )  # fmt: skip
-"""Steps v and w. On a disc the share of direction v in the variance falls as ``|v|^-3``: 2 % at (3, 2)."""
+"""On a disc the share of direction v in the variance falls as ``|v|^-3``: 2 % at (3, 2)."""
 
 
 @dataclass(frozen=True)
@@ -61,87 +64,95 @@ def straight_edges(contact: Mask, grid: Grid) -> StraightEdges:
     >>> straight_edges(np.pad([[True, True], [True, True]], 3), Grid.square(1.0, 8))
     StraightEdges(faces=0, runs=0, squares=0)
     """
-    field = contact.astype(np.int8)
+    near, field = _near_edge(contact), contact.astype(np.int8)
+    if not near[0].size:
+        return NO_STRAIGHT_EDGES
     if not grid.periodic:
         field = np.pad(field, (0, 1), constant_values=_OUTSIDE)
-    axes = [_Runs.of(field, v, w) for v, w in _AXES]
-    lengths = [axes[0].excess(axes[1]), axes[1].excess(axes[0])]
+    axes = _Runs(field, near, _AXES)
     if field.shape[0] != field.shape[1]:  # between the axes lines close on squares alone
         padding = [(0, max(field.shape) + 1 - count) for count in field.shape]
         field = np.pad(field, padding, constant_values=_OUTSIDE)
-    lengths += [_Runs.of(field, v, w).excess(_Runs.of(field, w, v)) for v, w in _BETWEEN]
-    straight = np.concatenate(lengths)
-    faces = sum(int(runs.beyond(_CROSSING).sum()) for runs in axes)
+    several = max(1, _AT_ONCE // near[0].size)
+    between = (_BETWEEN[k : k + several] for k in range(0, len(_BETWEEN), several))
+    straight = np.concatenate([axes.excess(), *(_Runs(field, near, steps).excess() for steps in between)])
+    faces = int(axes.beyond(_CROSSING).sum())
     return StraightEdges(faces, int(np.count_nonzero(straight)), int((straight**2).sum()))
 
 
-@dataclass(frozen=True)
-class _Runs:
-    """Runs along v of faces between an element and the one at w from it, by first and last position s.
+def _near_edge(contact: Mask) -> Sequence[Indices]:
+    """Return i and j of the elements in contact within `_REACH` of one without, also across a border."""
+    inside = contact
+    for axis in (0, 1):
+        for shift in (1, _REACH - 1, -_REACH):
+            inside = inside & np.roll(inside, shift, axis)
+    return np.divmod(np.flatnonzero(contact & ~inside), contact.shape[1])
 
-    ``side`` is 0 where the element itself is in contact, 1 where the other is. Lines close: a run may begin
-    before position 0. ``keys`` of all faces rise, ``run_of`` is the run of each.
+
+def _faces(field: Field, near: Sequence[Indices], v: Indices, w: Indices) -> tuple[Indices, ...]:
+    """Return direction, line t, position s and side of the faces between an element and that at w from it.
+
+    The side is 0 where the element itself is in contact, 1 where the other is.
+    """
+    wide, width = np.pad(field, _REACH, mode="wrap").ravel(), field.shape[1] + 2 * _REACH
+    here = (near[0] + _REACH) * width + near[1] + _REACH
+    away = np.multiply.outer(w[0] * width + w[1], [1, -1])[..., None]
+    way, side, place = np.unravel_index(np.flatnonzero(wide[here + away] == 0), (*away.shape[:2], here.size))
+    (i, j), v, w = (index[place] for index in near), v.take(way, axis=1), w.take(way, axis=1)
+    det = v[0] * w[1] - v[1] * w[0]
+    return way, det * (v[0] * j - v[1] * i) - side, det * (w[1] * i - w[0] * j), side
+
+
+class _Runs:
+    """Runs of faces along v, a row each: direction, line, position and side of its first face, and length.
+
+    Directions are v, w and w, v of each step. Lines close: a run that goes on at the beginning of its line
+    has two rows, each with the length of both. The last row of ``last`` and ``length`` is of no run.
     """
 
-    lines: int
-    count: int
-    keys: Indices
-    run_of: Indices
-    line: Indices
-    first: Indices
-    last: Indices
-    side: Indices
-
-    @classmethod
-    def of(cls, field: Field, v: Step, w: Step) -> _Runs:
-        """Return the runs of a field."""
-        other = np.roll(field, (-w[0], -w[1]), axis=(0, 1))
-        i, j = np.nonzero(field + other == 1)
-        det = v[0] * w[1] - v[1] * w[0]
-        lines, count = field.shape[0 if w[0] else 1], field.shape[0 if v[0] else 1]
-        line, position = det * (v[0] * j - v[1] * i) % lines, det * (w[1] * i - w[0] * j) % count
-        keys = np.sort((line * count + position) * 2 + other[i, j])
+    def __init__(self, field: Field, near: Sequence[Indices], steps: Steps) -> None:
+        v, w = np.transpose([pair for v, w in steps for pair in ((v, w), (w, v))], (1, 2, 0))
+        self.lines, self.count = (np.where(step[0], *field.shape) for step in (w, v))
+        span = max(field.shape) + 1  # keys of two lines do not follow one another
+        self.shape = 2 * len(steps), span, span, 2
+        keys = np.sort(self.keys(*_faces(field, near, v, w)))
         new = np.ones(keys.size + 1, dtype=bool)
-        new[1:-1] = (np.diff(keys) != 2) | (keys[1:] // 2 % count == 0)
-        first, last = keys[np.flatnonzero(new[:-1])], keys[np.flatnonzero(new[1:])]
-        line, side, first, last = first // 2 // count, first % 2, first // 2 % count, last // 2 % count
-        # a run at the end of a line goes on at its beginning
-        heads, tails = (np.flatnonzero(np.diff(line, **{end: -1})) for end in ("prepend", "append"))
-        joined = (
-            (first[heads] == 0) & (last[tails] == count - 1) & (side[heads] == side[tails]) & (heads < tails)
-        )
-        heads, tails = heads[joined], tails[joined]
-        first[heads] = first[tails] - count
-        kept, to = np.ones(line.size, dtype=bool), np.arange(line.size)
-        kept[tails], to[tails] = False, heads
-        run_of = (np.cumsum(kept) - 1)[to][np.cumsum(new[:-1]) - 1]
-        return cls(lines, count, keys, run_of, line[kept], first[kept], last[kept], side[kept])
+        new[1:-1] = np.diff(keys) != 2
+        self.first, self.last = keys[new[:-1]], np.append(keys[new[1:]], -1)
+        self.length = np.append((self.last[:-1] - self.first) // 2 + 1, 0)
+        self.rows = way, line, position, side = np.unravel_index(self.first, self.shape)
+        heads = np.flatnonzero(position == 0)
+        tails = self.row(way[heads], line[heads], -1, side[heads])
+        heads, tails = np.compress((tails >= 0) & (tails != heads), [heads, tails], axis=1)
+        self.length[tails] += self.length[heads]
+        self.length[heads] = self.length[tails]
+        long = (self.length[:-1] >= _SHORTEST) | (self.length[:-1] == self.count[way])
+        long[heads] = False
+        self.long = np.flatnonzero(long & (way % 2 == 0))
 
-    @property
-    def length(self) -> Indices:
-        """Number of faces of each run."""
-        return self.last - self.first + 1
+    def keys(self, way: Indices, line: Indices, position: Indices | int, side: Indices) -> Indices:
+        """Return the keys of faces, which rise along lines."""
+        place = way, line % self.lines[way], position % self.count[way], side
+        return np.ravel_multi_index(place, self.shape)
 
-    def length_at(self, line: Indices, position: Indices, side: Indices | int) -> Indices:
-        """Return the length of the run through each of these faces, 0 where there is none."""
-        if not self.keys.size:
-            return np.zeros_like(line)
-        wanted = (line % self.lines * self.count + position % self.count) * 2 + side
-        place = np.minimum(np.searchsorted(self.keys, wanted), self.keys.size - 1)
-        return np.where(self.keys[place] == wanted, self.length[self.run_of[place]], 0)
+    def row(self, way: Indices, line: Indices, position: Indices | int, side: Indices) -> Indices:
+        """Return the row of the run through each of these faces, -1 where there is none."""
+        keys = self.keys(way, line, position, side)
+        row = np.searchsorted(self.first, keys, side="right") - 1
+        left = self.last[row] - keys
+        return np.where((left >= 0) & (left % 2 == 0), row, -1)
 
     def beyond(self, other: Indices | int) -> Indices:
-        """Return how far each run is longer than another length, and all of a run that closes."""
-        return np.where(self.length == self.count, self.length, np.maximum(self.length - other, 0))
+        """Return how far each long run is longer than another length, and all of a run that closes."""
+        length, whole = self.length[self.long], self.count[self.rows[0][self.long]]
+        return np.where(length == whole, length, np.maximum(length - other, 0))
 
-    def excess(self, across: _Runs) -> Indices:
-        """Return how far each run is longer than those at its ends: on the lines beside it, or ``across``."""
-        long = np.flatnonzero(self.length >= _SHORTEST)
-        line, side, ends = self.line[long], self.side[long], self.length.copy()
-        ends[long] = 0
-        for end, step in ((self.first[long], -1), (self.last[long], 1)):
-            on = [self.length_at(line + up, end + step, side) for up in (-1, 1)]
-            corner = np.minimum(end, end + step)
-            turn = [across.length_at(corner, line + up, other) for up in (0, 1) for other in (0, 1)]
-            ends[long] += np.maximum(*on) + np.maximum.reduce(turn)
-        return self.beyond(ends)
+    def excess(self) -> Indices:
+        """Return how far each long run is longer than those at its ends: on lines beside it, or across."""
+        way, line, position, side = (index[self.long] for index in self.rows)
+        step, two = np.array([[-1], [1]]), np.arange(2)[:, None, None]
+        end = np.array([position, position + self.length[self.long] - 1])
+        on = self.length[self.row(way, line + 2 * two - 1, end + step, side)].max(axis=0)
+        corner = np.minimum(end, end + step)
+        turn = self.length[self.row(way + 1, corner, line + two[:, None], two)].max(axis=(0, 1))
+        return self.beyond((on + turn).sum(axis=0))

@@ -45,21 +45,18 @@ def element_error(slope: float, lower: Material, upper: Material | None = None) 
     >>> element_error(largest, copper, steel).in_line < 0.02 < element_error(largest, copper).in_line
     True
     """
-    slopes, ratios, errors = _table()
-    top = math.radians(float(slopes[-1]))
+    top = steepest_tabulated()
     require_number("slope", slope, f"an angle of 0 to {top:.4g} rad", at_least=0, at_most=top + 1e-12)
     bodies = [(lower, 0)] if upper is None else [(lower, 0), (upper, 2)]
     for body, _ in bodies:
         require_number("nu", body.nu, "a Poisson's ratio of 0 to 0.5", at_least=0)
     flat = sum(body.normal_compliance for body, _ in bodies)
-    worst = np.zeros(len(_MIRRORED))
-    for place in range(len(_POSITIONS)):
-        wavy = np.zeros(len(_MIRRORED))
-        for body, turn in bodies:  # a crest of one body is a valley of the other, half a wave away
-            at = (place + turn) % 4
-            error = _error(slope, body.nu, slopes, ratios, errors[:, min(at, 4 - at)])
-            wavy += body.normal_compliance / flat * (error[_MIRRORED] if at == 3 else error)
-        worst = np.maximum(worst, np.abs(wavy))
+    wavy = np.zeros((len(_POSITIONS), len(_MIRRORED)))
+    for body, turn in bodies:  # a crest of one body is a valley of the other, half a wave away
+        errors = _errors(slope, body.nu)
+        quarters = np.array([*errors, errors[1, _MIRRORED]])  # the other flank is mirrored
+        wavy += body.normal_compliance / flat * np.roll(quarters, -turn, axis=0)[: len(_POSITIONS)]
+    worst = np.abs(wavy).max(axis=0)
     return ElementError(float(worst[0]), float(worst[1:7].max()), float(worst[7:].max()))
 
 
@@ -68,19 +65,21 @@ def steepest_tabulated() -> float:
     return math.radians(float(_table()[0][-1]))
 
 
-def _error(slope: float, nu: float, slopes: Array, ratios: Array, errors: Array) -> Array:
-    """(10,) from ``errors`` (ratios, slopes, 10): linear over the slope's tangent, quadratic in nu.
+def _errors(slope: float, nu: float) -> Array:
+    """Errors (positions, 10): linear over the slope's tangent, quadratic in nu.
 
     What is interpolated is the error over the tangent, and times ``1 - nu^2``, as a displacement is: its
     first-order part, ``(1 + nu)(1 - 2 nu)`` times the slope, is met exactly.
     """
-    tangents = np.tan(np.radians(slopes))
-    quotients = errors / tangents[:, None] * (1 - ratios[:, None, None] ** 2)
-    by_slope = np.array(
-        [[np.interp(math.tan(slope), tangents, column) for column in rows.T] for rows in quotients]
-    )
+    slopes, ratios, errors = _table()
+    tangents, tangent = np.tan(np.radians(slopes)), math.tan(slope)
+    quotients = errors / tangents[:, None] * (1 - ratios[:, None, None, None] ** 2)
+    before = int(np.searchsorted(tangents[1:], tangent, side="right"))
+    rises = np.diff(quotients, axis=2, append=quotients[:, :, -1:])[:, :, before]
+    rise = rises / np.diff(tangents, append=math.inf)[before]
+    by_slope = rise * max(tangent - tangents[before], 0.0) + quotients[:, :, before]
     weights = [math.prod((nu - other) / (own - other) for other in ratios if other != own) for own in ratios]
-    found: Array = math.tan(slope) / (1 - nu**2) * (np.array(weights) @ by_slope)
+    found: Array = tangent / (1 - nu**2) * np.tensordot(weights, by_slope, axes=1)
     return found
 
 

@@ -78,7 +78,7 @@ def verdict_on(solution: Record, name: str) -> str:
     if not math.isfinite(value):  # without contact
         return ""
     scale = {"binormal_force": math.hypot(solution.friction_force, solution.binormal_force)}
-    if not solution.traction.any():  # frictionless
+    if name.startswith(("friction", "binormal")) and not solution.traction.any():  # frictionless
         scale = dict.fromkeys(("friction_force_corrected", "binormal_force"), solution.normal_force)
         scale |= dict.fromkeys(("friction_coefficient_corrected", "friction_coefficient"), 1.0)
     return verdict(solution.error(name), scale.get(name, value))

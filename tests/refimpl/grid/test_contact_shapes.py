@@ -135,8 +135,14 @@ def test_a_patch_across_a_period_has_the_edges_of_one_inside(shift: tuple[int, i
     contact = np.zeros((16, 16), dtype=bool)
     contact[3:5, 2:12] = True
     found = straight_edges(np.roll(contact, shift, (0, 1)), Grid.square(1.0, 16, periodic=True))
-    assert found == straight_edges(contact, Grid.square(1.0, 16))
-    assert (found.faces, found.runs) == (16, 2)
+    assert found == straight_edges(contact, Grid.square(1.0, 16)) == StraightEdges(16, 2, 72)
+
+
+def test_many_patches_have_the_edges_of_each() -> None:
+    """As many elements as are not looked at all at once."""
+    contact = np.tile(np.pad(np.ones((2, 10), dtype=bool), ((3, 11), (2, 4))), (40, 40))
+    found = straight_edges(contact, Grid.square(1.0, 640, periodic=True))
+    assert found == StraightEdges(1600 * 16, 1600 * 2, 1600 * 72)
 
 
 def walked(contact: Mask, periodic: bool) -> list[int]:
