@@ -68,10 +68,10 @@ def straight_edges(contact: Mask, grid: Grid) -> StraightEdges:
     if not near[0].size:
         return NO_STRAIGHT_EDGES
     if not grid.periodic:
-        field = np.pad(field, (0, 1), constant_values=_OUTSIDE)
+        field = np.pad(field, (0, _REACH), constant_values=_OUTSIDE)
     axes = _Runs(field, near, _AXES)
     if field.shape[0] != field.shape[1]:  # between the axes lines close on squares alone
-        padding = [(0, max(field.shape) + 1 - count) for count in field.shape]
+        padding = [(0, max(field.shape) + _REACH - count) for count in field.shape]
         field = np.pad(field, padding, constant_values=_OUTSIDE)
     several = max(1, _AT_ONCE // near[0].size)
     between = (_BETWEEN[k : k + several] for k in range(0, len(_BETWEEN), several))

@@ -85,6 +85,13 @@ def test_nothing_in_contact_and_full_contact_have_none() -> None:
             assert straight_edges(contact, grid) == NO_STRAIGHT_EDGES
 
 
+def test_no_face_reaches_across_a_free_border() -> None:
+    """Three elements, less than the longest step from opposite borders."""
+    contact = np.zeros((5, 5), dtype=bool)
+    contact[[1, 1, 4], [1, 3, 2]] = True
+    assert straight_edges(contact, Grid.square(1.0, 5)) == NO_STRAIGHT_EDGES
+
+
 @pytest.mark.parametrize("axis", [0, 1])
 def test_a_strip_across_a_period_is_two_edges_of_its_length(axis: int) -> None:
     """Wherever it lies, also across the border."""
