@@ -19,7 +19,7 @@ _LEAST_RESOLVED = 0.2  # share of gaps that are not single elements: a mean gap 
 _SLOPES = 2  # power of the share that is not single elements, which divides the scatter of slopes
 EDGE_SCATTER, UNEVEN_SCATTER = 0.03, 0.46  # elements per face, and per uneven one
 _ALONE = 5.5  # power of the share of single elements: patches of 2 x 2 have bars of all their area
-STRAIGHT_LEFT = 0.42  # share of `straight_scatter` beyond the mean excess
+STRAIGHT_LEFT = 0.46  # share of `straight_scatter` beyond the mean excess
 # standard deviation of mu by slopes under that pressure, over border fraction and rms slope: the errors there
 BORDER_SLOPES = 0.1
 PLASTIC_SINGLE = 1.5  # further excess of single elements at the hardness, over that of their edge

@@ -3,13 +3,14 @@
 A number is requested by ``accuracy=``, and the transforms' ``n log n`` of all grids solved are compared with
 those of the cheapest grid that would have done, which is known only afterwards: the coarsest one from which
 on the error is within the accuracy, against 512 elements along the longer side. Beside it stands what the
-grids that open a refinement forecast.
+grids that open a refinement forecast, and the work of the last grid: for the corrected mu and the summed one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final
 
 import numpy as np
 
@@ -34,7 +35,9 @@ from verification.framework.files import write_result
 from verification.framework.provenance import provenance
 from verification.framework.text_table import columns
 
-ASKED: dict[Quantity, float] = {"friction_coefficient_corrected": 0.02, "contact_area_corrected": 0.05}
+CORRECTED: Final = "friction_coefficient_corrected"
+SUMMED: Final = "friction_coefficient"
+ASKED: dict[Quantity, float] = {CORRECTED: 0.01, SUMMED: 0.01, "contact_area_corrected": 0.05}
 SIZES = [M for M in GRID_SIZES if M < REFERENCE]
 
 
@@ -55,7 +58,8 @@ def costs(one: rf.Scene, *, most: int = REFERENCE) -> list[dict[str, Any]]:
         refined = rf.solve(one, accuracy=accuracy, quantity=name, max_grid=most)
         met = refined.status is not rf.Status.ACCURACY_NOT_REACHED and refined.converged
         row: dict[str, Any] = {"number": name, "cheapest": cheapest, "met": met}
-        row["last"] = max(refined.problem.grid.shape)
+        row["last"] = last = max(refined.problem.grid.shape)
+        row["work"] = rf.solve(one, grid=last).cost.point_logs if met else None
         row["cost"] = refined.cost.point_logs / single[cheapest].cost.point_logs if met and cheapest else None
         row["forecast"] = None if expected.refusal else max(expected.grid.shape)
         rows.append(row)
@@ -63,17 +67,32 @@ def costs(one: rf.Scene, *, most: int = REFERENCE) -> list[dict[str, Any]]:
 
 
 def summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Return medians of the cost and of the forecast over the last grid, and shares: met, cost at most 2."""
+    """Return medians of cost, last grid's work and forecast over it, and shares: met, cost at most 2.
+
+    An accuracy that is not met takes infinite work.
+    """
     paid = [row["cost"] for row in rows if row["cost"] is not None]
     ratios = [row["forecast"] / row["last"] for row in rows if row["met"] and row["forecast"]]
+    work = float(np.median([row["work"] or math.inf for row in rows]))
     return {
         "scenes": len(rows),
         "met": sum(row["met"] for row in rows) / len(rows),
         "compared": len(paid),
         "median_cost": float(np.median(paid)) if paid else None,
         "cost_at_most_2": sum(cost <= 2 for cost in paid) / len(paid) if paid else None,
+        "median_work": work if math.isfinite(work) else None,
         "median_forecast_over_last": float(np.median(ratios)) if ratios else None,
         "forecast_within_2": sum(0.5 <= ratio <= 2 for ratio in ratios) / len(ratios) if ratios else None,
+    }
+
+
+def work_ratios(table: Iterable[Mapping[str, Any]]) -> dict[str, float]:
+    """Return the work for the corrected mu over that for the summed one, by class that reaches the former."""
+    work = {(row["class"], row["number"]): row["median_work"] for row in table}
+    return {
+        kind: found / (work[kind, SUMMED] or math.inf)
+        for (kind, number), found in work.items()
+        if number == CORRECTED and found
     }
 
 
@@ -97,6 +116,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     document = {"first": chosen.first, "asked": ASKED, "table": table, "rows": rows}
     write_result(jsonable({"provenance": provenance(), **document}), chosen.json)
     print(columns(lines(table), indent=""))
+    found = work_ratios(table)
+    print(f"work for the corrected mu over the summed: {np.median(list(found.values())):.2f}, median of")
+    print(", ".join(f"{kind} {ratio:.2f}" for kind, ratio in found.items()))
 
 
 def lines(table: Sequence[Mapping[str, Any]]) -> list[list[str]]:
