@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 
 from tests.documents import ROOT
-from tests.verification.cli.children import rows
+from verification.cases.paper.sweeps import finished
 
 JOBS = ROOT / "examples/jobs"
 PATIENCE = 300.0  # s, on a busy machine; each takes a few on an idle one
@@ -75,7 +75,7 @@ def test_a_sweep_is_interrupted_and_goes_on(job: Path) -> None:
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a job in the background ignores it
     )  # fmt: skip
     end = time.monotonic() + PATIENCE
-    while rows(job / "loads.sqlite") < 10 and started.poll() is None and time.monotonic() < end:
+    while finished(job / "loads.sqlite") < 10 and started.poll() is None and time.monotonic() < end:
         time.sleep(0.05)
     os.killpg(started.pid, signal.SIGINT)  # Ctrl-C, of the whole group
     _, shown = started.communicate(timeout=PATIENCE)
@@ -83,7 +83,7 @@ def test_a_sweep_is_interrupted_and_goes_on(job: Path) -> None:
     stated = re.search(message, shown)
     assert stated is not None, shown
     assert "Traceback" not in shown
-    kept = rows(job / "loads.sqlite")
+    kept = finished(job / "loads.sqlite")
     assert 10 <= kept == int(stated[1]) < 210
     assert not (job / "loads.csv").exists()
     printed = run(job, "loads")

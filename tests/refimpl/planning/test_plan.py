@@ -54,23 +54,6 @@ def test_exact_zeros_are_neglected_at_no_cost(scene: rf.Scene, why: str) -> None
     assert "coupled" not in chosen.neglected
 
 
-def test_with_a_grid_alone_nothing_that_shear_does_is_small_enough() -> None:
-    chosen = planned(ROUGH, 64)
-    assert chosen.demand == 1e-8
-    assert chosen.neglected == ()
-    assert all(chosen.includes(name) for name in ("coupled", "oblique", "tilted", "active_set"))
-
-
-def test_without_friction_a_symmetric_scene_neglects_slope_terms() -> None:
-    chosen = planned(FRICTIONLESS, 64)
-    assert not chosen.includes("oblique")
-    assert 0 < chosen.term("oblique").effect.area < 1e-4
-    assert chosen.contact.symmetric
-    steep = replace(FRICTIONLESS, upper=rf.Body(STEEL, rf.Sphere(2e-3)), load=3000.0)
-    assert planned(steep, 64).includes("oblique")
-    assert planned(replace(ROUGH, friction=rf.Friction()), 64).includes("oblique")
-
-
 @pytest.mark.parametrize("accuracy", [0.3, 0.03, 0.001])
 def test_what_is_neglected_stays_within_its_budget(accuracy: float) -> None:
     chosen = planned(ROUGH, 256, demand=accuracy)
@@ -95,12 +78,6 @@ def test_a_slope_correction_needs_the_coupling() -> None:
     with pytest.raises(rf.InputError) as caught:
         planned(ROUGH, 16, slope_correction=True, coupled=False)
     assert caught.value.field == "coupled"
-
-
-def test_tau_that_moves_nothing_has_no_active_set_to_iterate() -> None:
-    chosen = planned(TWINS, 32, oblique=False)
-    assert not chosen.includes("active_set")
-    assert "moves nothing" in chosen.term("active_set").reason
 
 
 @pytest.mark.parametrize("grid", [SMOOTH.grid(128), RECTANGLE], ids=str)

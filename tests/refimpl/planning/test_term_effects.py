@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 import refimpl as rf
 from refimpl.model.materials import Pair
-from refimpl.model.problem import Terms
-from refimpl.planning.expected_contact import ExpectedContact, solved_contact
-from refimpl.planning.plan import estimated_memory, make_plan
-from refimpl.planning.term_effects import Effect, Scales, effects_in, neglected_parts
-from refimpl.planning.terms import budget_of, choose
+from refimpl.planning.expected_contact import ExpectedContact
+from refimpl.planning.plan import estimated_memory
+from refimpl.planning.term_effects import Effect, Scales
+from refimpl.planning.terms import budget_of
 from refimpl.scene.discretise import discretise
 
 PAIR = Pair(lower=rf.Material(2e9, 0.25, hardness=90e6), upper=rf.Material(8e9, 0.1))
@@ -32,98 +30,10 @@ SCENE = rf.Scene(
 )
 
 
-def test_a_solved_contact_is_weighted_by_its_pressure() -> None:
-    """Pressures of 1 and 3 MPa: 2 in the mean, (1 + 9) / 4 = 2.5 weighted by themselves."""
-    problem = discretise(SCENE, SCENE.grid(6))
-    pressure = np.zeros((6, 6))
-    pressure[2, 2], pressure[2, 3] = 1e6, 3e6
-    found = solved_contact(problem, pressure, CONTACT)
-    assert (found.mean_pressure, found.pressure) == (2e6, 2.5e6)
-    assert (found.elements, found.patches, found.border) == (2, 1.0, 0.0)
-    gradients = [np.gradient(z, 2e-3 / 6) for z in problem.heights]
-    along = [float(x[2, 2] + 3 * x[2, 3]) / 4 for x, _ in gradients]
-    assert found.least_mean_slope == pytest.approx(min(map(abs, along)))
-    squares = [math.sqrt((x[2, 2] ** 2 + 3 * x[2, 3] ** 2) / 4) for x, _ in gradients]
-    assert found.least_slope == pytest.approx(min(squares))
-    before = (found.approach, found.symmetric, found.mirrored, found.window)
-    assert before == (CONTACT.approach, CONTACT.symmetric, CONTACT.mirrored, CONTACT.window)
-
-
-def test_slope_terms_by_hand() -> None:
-    """mu = 0.2 + 1 MPa / 10 MPa; tilts pi c 2 (0.2 * 16 MPa + 1 MPa), pi c = (1 + nu)(1 - 2 nu) / (2 E)."""
-    lower, upper = ((1 + nu) * (1 - 2 * nu) / 2 / E * 2.0 * 4.2e6 for E, nu in ((2e9, 0.25), (8e9, 0.1)))
-    scales = Scales(CONTACT, PAIR, SCENE.friction)
-    assert scales.tilts == pytest.approx((lower, upper))
-    slope = lower + 4e-4 + 1.5 * 0.002 + 0.4 * 0.01 + 2.0 * 0.1 * 0.02
-    local = 0.3 * slope + 4e-4
-    area = local + 2 * math.sqrt(local / 50)
-    found = effects_of("oblique", scales)
-    assert found.area == pytest.approx(area)
-    assert found.friction == pytest.approx(((1 + 0.09) * slope + 0.1 * area) / 0.3)
-
-
-def test_coupling_by_hand() -> None:
-    """c / a with lower minus upper; four patches halve the change of the area."""
-    c = [(1 + nu) * (1 - 2 * nu) / 2 / E for E, nu in ((2e9, 0.25), (8e9, 0.1))]
-    a = [(1 - nu**2) / E for E, nu in ((2e9, 0.25), (8e9, 0.1))]
-    strength = (c[0] - c[1]) / sum(a) * 0.3
-    local = 0.35 * strength
-    area = 2.0 * strength**2 + local / 2 + 2 * math.sqrt(local / 50)
-    tilt = 0.5 * (c[0] - c[1]) * 2.0 * 4.2e6
-    found = effects_of("coupled", Scales(CONTACT, PAIR, SCENE.friction))
-    assert found.area == pytest.approx(area)
-    assert found.friction == pytest.approx((tilt + local * 0.01 + 0.1 * area) / 0.3)
-
-
-def test_elements_of_a_symmetric_scene_come_four_at_a_time() -> None:
-    symmetric = replace(CONTACT, symmetric=True)
-    alone, bunched = (Scales(c, PAIR, rf.Friction()).effect(0.0, 0.01, 0.02) for c in (CONTACT, symmetric))
-    assert alone.area == pytest.approx(0.01 + 2 * math.sqrt(0.02 / 50))
-    assert bunched.area == pytest.approx(0.01 + 2 * math.sqrt(4 * 0.02 / 50))
-    assert effects_of("oblique", Scales(symmetric, PAIR, rf.Friction())) == Effect(0.0, 4e-4)
-
-
 def effects_of(name: str, scales: Scales) -> Effect:
     from refimpl.planning.term_effects import ESTIMATES
 
     return ESTIMATES[name](scales)
-
-
-def test_on_a_finer_grid_as_many_times_more_elements_touch() -> None:
-    """Of 36 elements two touch, so of 900 fifty; a coarser request changes nothing."""
-    problem = discretise(SCENE, SCENE.grid(6))
-    pressure = np.zeros((6, 6))
-    pressure[2, 2:4] = 2e6
-    contact = solved_contact(problem, pressure, CONTACT)
-    for elements, expected in ((900, 50), (18, 2), (None, 2)):
-        found = effects_in(("oblique",), problem, pressure, CONTACT, elements)
-        scales = Scales(replace(contact, elements=expected), problem.pair, problem.friction)
-        assert found == {"oblique": effects_of("oblique", scales)}
-    assert effects_in((), problem, pressure, CONTACT) == {}
-    assert effects_in(("oblique",), problem, 0 * pressure, CONTACT) == {}
-
-
-def test_effects_are_parts_in_each_numbers_unit() -> None:
-    """Changes of 1 % and 2 % of local friction, 0.3, and bare 0.001: 0.01 of mu, on 8 N 0.08 N."""
-    effects = {"coupled": Effect(0.01, 0.1, bare=0.001), "oblique": Effect(0.02, 0.3)}
-    found = neglected_parts(effects, 0.3, 8.0, {"contact_area": -2e-6, "max_pressure": 5e7})
-    assert {name: part["neglected"] for name, part in found.items()} == pytest.approx(
-        {
-            "contact_area": 0.8e-6,
-            "max_pressure": 2e7,
-            "friction_coefficient": 0.01,
-            "friction_force": 0.08,
-            "binormal_force": 0.08,
-        }
-    )
-
-
-@pytest.mark.parametrize(("mean", "included"), [(29e6, False), (31e6, True)])
-def test_the_cap_enters_where_three_mean_pressures_reach_the_hardness(mean: float, included: bool) -> None:
-    problem = discretise(SCENE, SCENE.grid(6))
-    terms = choose(problem, replace(CONTACT, mean_pressure=mean), Terms(), 1e-8)
-    (cap,) = (term for term in terms if term.name == "plastic")
-    assert cap.included is included
 
 
 def test_tilt_by_hand() -> None:
@@ -156,27 +66,6 @@ def test_without_friction_a_symmetric_scene_has_a_hundredth_of_its_edge_as_budge
     found = [budget_of(problem, replace(CONTACT, symmetric=word), 1e-3) for word in (True, False)]
     assert found == pytest.approx([0.01 * 0.30 / math.sqrt(50 / 4 / math.pi), 5e-4], rel=0.02)
     assert budget_of(problem, replace(CONTACT, symmetric=True), 0.2) == 0.1
-
-
-def test_reasons_of_terms_that_come_with_others() -> None:
-    """The budget less the neglected coupling, a hundredth more and less than the tilt takes."""
-    problem, scales = discretise(SCENE, SCENE.grid(6)), Scales(CONTACT, PAIR, SCENE.friction)
-    sizes = {name: effects_of(name, scales).larger for name in ("coupled", "tilted")}
-    both, given = sum(sizes.values()), Terms(oblique=True)
-    for share, reason in ((1.01, "negligible"), (0.99, "shear moves the common surface")):
-        tilted = choose(problem, CONTACT, given, share * both)[2]
-        assert (tilted.reason, tilted.negligible) == (reason, share > 1)
-    assert choose(problem, CONTACT, given, 0.0)[2].reason == "comes with the coupling's kernel"
-
-
-def test_without_friction_slopes_that_are_all_of_mu_stay_and_facets_still_shear() -> None:
-    """A budget of half of mu: slopes are kept for mu's sake, when the cap is restored as well."""
-    problem = discretise(replace(SCENE, friction=rf.Friction()), SCENE.grid(6))
-    plan = make_plan(problem, demand=1.0, for_mu=True)
-    assert not make_plan(problem, demand=1.0).includes("oblique")
-    assert plan.restore(problem, "plastic").includes("oblique")
-    corrected = choose(problem, CONTACT, Terms(slope_correction=True), 1.0)
-    assert [term.included for term in corrected] == [True, True, True, True, False, False]
 
 
 def test_memory_is_of_the_grid_or_of_a_window_half_as_large_again() -> None:

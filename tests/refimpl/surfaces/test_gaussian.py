@@ -213,21 +213,6 @@ def test_periodic_covariance_is_the_periodic_sum(lengths: tuple[float, float], l
         assert ours == pytest.approx(images(x, y) / images(0.0, 0.0), rel=0, abs=1e-13)
 
 
-@pytest.mark.parametrize("lay", [0.0, 0.6, 2.0])
-@pytest.mark.parametrize("periodic", [False, True])
-def test_one_surface_on_every_grid_and_at_every_offset(lay: float, periodic: bool) -> None:
-    surface, lengths = GaussianRoughness(1.0, (3e-4, 1e-4), seed=7, lay=lay), (1.61e-3, 1.2e-3)
-    coarse, middle, fine = (surface.sample(Grid((M, M), lengths, periodic)) for M in (63, 189, 567))
-    np.testing.assert_allclose(middle[1::3, 1::3], coarse, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(fine[4::9, 4::9], coarse, rtol=0, atol=1e-12)
-    grid = Grid((63, 63), lengths, periodic)
-    slid = surface.sample(grid, (5 * grid.spacings[0], -9 * grid.spacings[1]))
-    np.testing.assert_allclose(slid[:-5, 9:], coarse[5:, :-9], rtol=0, atol=1e-12)
-    if periodic:
-        again = surface.sample(grid, (3 * lengths[0], -lengths[1]))
-        np.testing.assert_allclose(again, coarse, rtol=0, atol=1e-12)
-
-
 @pytest.mark.parametrize("lay", [0.0, 0.3, math.pi / 2])
 def test_equal_lengths_are_the_isotropic_surface_to_the_last_bit(lay: float) -> None:
     for periodic in (False, True):

@@ -46,20 +46,15 @@ def holes(z: np.ndarray) -> np.ndarray:
 # --- form ---
 
 
-@pytest.mark.parametrize("radius", [3e-4, -3e-4, 5e-2])
-@pytest.mark.parametrize("tilt", [(0.0, 0.0), (0.05, -0.08)])
-def test_a_sphere_is_found_and_taken_off(radius: float, tilt: tuple[float, float]) -> None:
-    z = ball(radius, tilt)
-    form = fit_form(X, Y, holes(z), "sphere", PIXEL)
-    assert form.radius == pytest.approx(radius, rel=1e-6)
-    np.testing.assert_allclose(form(X, Y), z, rtol=0, atol=1e-9 * np.ptp(z))
-
-
-@pytest.mark.parametrize("radius", [4e-4, -4e-4])
-@pytest.mark.parametrize("degrees", [0, 20, 90, 135])
-def test_a_cylinder_is_found_at_any_angle(radius: float, degrees: float) -> None:
-    z = roller(radius, degrees)
-    form = fit_form(X, Y, holes(z), "cylinder", PIXEL)
+@pytest.mark.parametrize(
+    ("level", "radius", "z"),
+    [
+        *(("sphere", R, ball(R, tilt)) for R in (3e-4, -3e-4, 5e-2) for tilt in ((0.0, 0.0), (0.05, -0.08))),
+        *(("cylinder", R, roller(R, angle)) for R in (4e-4, -4e-4) for angle in (0, 20, 90, 135)),
+    ],
+)
+def test_a_ball_or_roller_is_found_and_subtracted(level: str, radius: float, z: np.ndarray) -> None:
+    form = fit_form(X, Y, holes(z), level, PIXEL)
     assert form.radius == pytest.approx(radius, rel=1e-6)
     np.testing.assert_allclose(form(X, Y), z, rtol=0, atol=1e-9 * np.ptp(z))
 

@@ -145,11 +145,20 @@ def test_lay_stretches_the_spectrum() -> None:
 
 
 @pytest.mark.parametrize(
-    "changed", [{}, {"anisotropy": 3.0, "lay": 0.7}, {"rms_gradient": 0.1, "hurst": 1.0}]
+    "surface",
+    [
+        *(
+            rough(**changed)
+            for changed in ({}, {"anisotropy": 3.0, "lay": 0.7}, {"rms_gradient": 0.1, "hurst": 1.0})
+        ),
+        *(rf.GaussianRoughness(1.0, (3e-4, 1e-4), seed=7, lay=lay) for lay in (0.0, 0.6, 2.0)),
+    ],
 )
 @pytest.mark.parametrize("periodic", [False, True])
-def test_one_surface_on_every_grid_and_at_every_offset(changed: dict[str, float], periodic: bool) -> None:
-    surface, lengths = rough(**changed), (SIDE, 0.8 * SIDE)
+def test_one_surface_on_every_grid_and_at_every_offset(
+    surface: SelfAffineRoughness | rf.GaussianRoughness, periodic: bool
+) -> None:
+    lengths = (SIDE, 0.8 * SIDE)
     rms = surface.rms
     coarse, middle, fine = (surface.sample(Grid((M, M), lengths, periodic)) for M in (63, 189, 567))
     np.testing.assert_allclose(middle[1::3, 1::3], coarse, rtol=0, atol=1e-12 * rms)

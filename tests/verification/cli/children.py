@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 import os
-import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -86,16 +85,3 @@ def one_line(ended: Ended, says: str, status: int = 1) -> None:
 
 def small(realisations: int = 40) -> Study:
     return study_from_dict({"scene": "table1-rough", "realisations": realisations, "vary": {"grid": [12]}})
-
-
-def rows(store: Path) -> int:
-    """Finished runs of a store, 0 before it has its table."""
-    if not store.exists():
-        return 0
-    connection = sqlite3.connect(store)
-    try:
-        return int(connection.execute("select count(*) from runs").fetchone()[0])
-    except sqlite3.OperationalError:
-        return 0
-    finally:
-        connection.close()

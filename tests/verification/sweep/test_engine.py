@@ -15,9 +15,10 @@ from typing import Any
 import pytest
 
 from refimpl.errors import InputError
-from tests.verification.cli.children import Ended, one_line, rows
+from tests.verification.cli.children import Ended, one_line
 from tests.verification.cli.commands import refused, shown
 from tests.verification.sweep.own_cluster import Cluster, cluster
+from verification.cases.paper.sweeps import finished
 from verification.framework.threads import THREADS, limited_to_one_thread
 from verification.sweep import engine
 from verification.sweep.export import to_csv
@@ -121,50 +122,6 @@ def test_a_refusal_leaves_a_store_that_holds_something(tmp_path: Path, kept: int
 
 # --- kills ---
 
-# Forks an interpreter that has everything imported, so that kills hit the sweep and not the start of Python.
-KILLER = """
-import os, random, signal, sqlite3, sys, time
-from pathlib import Path
-from verification.sweep import engine
-from verification.sweep.export import to_csv
-from verification.sweep.study_file import read_study
-
-study, folder = read_study(sys.argv[1]), Path(sys.argv[2])
-started = time.perf_counter()
-undisturbed = to_csv(engine.sweep(study, folder / "undisturbed.sqlite", workers=0).rows)
-seconds = time.perf_counter() - started
-moments = random.Random(20010101)
-progress = []
-for _ in range(20):
-    child = os.fork()
-    if child == 0:
-        engine.sweep(study, folder / "killed.sqlite", workers=0, tick=lambda p: None)
-        os._exit(0)
-    time.sleep(moments.uniform(0, seconds / 10))
-    os.kill(child, signal.SIGKILL)
-    os.waitpid(child, 0)
-    if (folder / "killed.sqlite").exists():
-        try:
-            n = sqlite3.connect(folder / "killed.sqlite").execute("select count(*) from runs").fetchone()[0]
-        except sqlite3.OperationalError:  # killed before the table was made
-            n = 0
-        progress.append(n)
-done = engine.sweep(study, folder / "killed.sqlite", workers=0)
-assert progress == sorted(progress) and len(set(progress)) > 5, progress
-assert done.found == progress[-1] and done.found + done.finished == len(study)
-assert to_csv(done.rows) == undisturbed
-"""
-
-
-@pytest.mark.nightly
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="kills by SIGKILL need a POSIX system")
-def test_killed_twenty_times_gives_the_undisturbed_table(tmp_path: Path) -> None:
-    (tmp_path / "study.toml").write_text(STUDY.replace("10", "20"))
-    command = [sys.executable, "-c", KILLER, str(tmp_path / "study.toml"), str(tmp_path)]
-    done = subprocess.run(command, capture_output=True, text=True, env=ONE_THREAD, timeout=120)
-    assert done.returncode == 0, done.stdout + done.stderr
-
-
 def status(pid: int | str) -> list[str]:
     """State and parent of a process, from /proc; empty when it has ended."""
     try:
@@ -179,7 +136,7 @@ def test_the_killed_command_leaves_no_workers_and_resumes(tmp_path: Path) -> Non
     command = [sys.executable, "-c", "from verification.cli import main; raise SystemExit(main())", *tail]
     killed = subprocess.Popen(command, cwd=tmp_path, env=ONE_THREAD, stderr=subprocess.DEVNULL)
     deadline = time.monotonic() + 60
-    while rows(tmp_path / "s.sqlite") < 3 and time.monotonic() < deadline:
+    while finished(tmp_path / "s.sqlite") < 3 and time.monotonic() < deadline:
         time.sleep(0.02)
     everything = [entry.name for entry in Path("/proc").glob("[0-9]*")]
     workers = [pid for pid in everything if status(pid)[1:] == [str(killed.pid)]]
@@ -191,7 +148,7 @@ def test_the_killed_command_leaves_no_workers_and_resumes(tmp_path: Path) -> Non
     ) and time.monotonic() < deadline:
         time.sleep(0.02)
     assert left == []
-    kept = rows(tmp_path / "s.sqlite")
+    kept = finished(tmp_path / "s.sqlite")
     assert 3 <= kept < 40
     again = subprocess.run([*command, "--json", "s.json"], cwd=tmp_path, env=ONE_THREAD, capture_output=True)
     assert (again.returncode, again.stderr) == (0, b"")  # no progress line where stderr is no terminal
@@ -253,7 +210,7 @@ def swept(tmp_path: Path, made: Cluster, act: Callable[[], object]) -> Ended:
         [sys.executable, "-c", IMPATIENT, *tail], cwd=tmp_path, text=True, stderr=subprocess.PIPE
     )
     deadline = time.monotonic() + 60
-    while rows(tmp_path / "s.sqlite") < 2 and time.monotonic() < deadline:
+    while finished(tmp_path / "s.sqlite") < 2 and time.monotonic() < deadline:
         time.sleep(0.02)
     act()
     _, err = child.communicate(timeout=60)
@@ -266,7 +223,7 @@ def test_a_lost_cluster_is_one_line_and_the_sweep_goes_on_later(victim: str, tmp
     with cluster(tmp_path, 1) as made:
         process = made.scheduler if victim == "scheduler" else made.workers[0]
         one_line(swept(tmp_path, made, process.kill), f"the {victim}")
-    kept = rows(tmp_path / "s.sqlite")
+    kept = finished(tmp_path / "s.sqlite")
     assert 2 <= kept < 400
     again = engine.sweep(small(kept, (12,)), tmp_path / "s.sqlite", workers=0)
     assert (again.found, len(again.rows)) == (kept, kept)

@@ -50,8 +50,8 @@ def _untimed(table: str) -> str:
     return "\n".join(head for head, _, _ in [heads, *rows]) + "\n"
 
 
-def _finished(store: Path) -> int:
-    """Runs in the store; 0 before its table exists."""
+def finished(store: Path) -> int:
+    """Return the number of finished runs of a store; 0 before it has its table."""
     if not store.exists():
         return 0
     connection = sqlite3.connect(store)
@@ -65,7 +65,7 @@ def _finished(store: Path) -> int:
 
 def _wait_for(store: Path, number: int, running: subprocess.Popen[bytes]) -> None:
     """Until so many runs are kept; raises RuntimeError if the sweep ends before that."""
-    while _finished(store) < number:
+    while finished(store) < number:
         if running.poll() is not None:
             raise RuntimeError("the sweep ended before it was killed")
         time.sleep(0.01)
@@ -92,7 +92,7 @@ def killed() -> Measured:
             time.sleep(moments.uniform(0.0, 0.05))
             running.kill()
             running.wait()
-            kept.append(_finished(folder / "s.sqlite"))
+            kept.append(finished(folder / "s.sqlite"))
         subprocess.run(command, cwd=folder, check=True, capture_output=True)
         ours = _untimed((folder / "s.csv").read_text(encoding="utf-8")).splitlines()
         whole = _untimed(_table(_small(150), folder / "whole.sqlite", workers=2)).splitlines()
