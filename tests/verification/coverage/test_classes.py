@@ -122,10 +122,13 @@ def test_a_smooth_ball_costs_about_the_cheapest_grid() -> None:
 
 
 def test_the_words_of_the_page_follow_from_the_committed_costs() -> None:
-    rows = committed("class_costs")["rows"]
+    study = committed("class_costs")
+    rows, ratios = study["rows"], list(class_costs.work_ratios(study["table"]).values())
     costs = [row["cost"] for row in rows if row["number"] == "friction_coefficient_corrected" and row["cost"]]
     median, tail, most = np.median(costs), np.percentile(costs, 90), max(costs)
     words = f"is {median:.1f} in the median", f"{tail:.1f} at the 90th percentile", f"{most:.0f} at most"
+    words += (f"takes {np.median(ratios):.2f} of the work of that of the summed mu",)
+    words += (f"in the median of {len(ratios)} classes",)
     page = " ".join((ROOT / "docs/error-bars.md").read_text(encoding="utf-8").split())
     assert [each for each in words if each not in page] == []
 
