@@ -231,6 +231,13 @@ def finished() -> tuple[Run, Row, float]:
     return run, *execute(run.inputs)
 
 
+def test_a_run_is_kept_once(tmp_path: Path, finished: tuple[Run, Row, float]) -> None:
+    with open_store(tmp_path / "s.sqlite") as kept:
+        kept.add(*finished)
+        with pytest.raises(sqlite3.IntegrityError):
+            kept.add(*finished)
+
+
 def test_numbers_that_do_not_exist_are_kept_as_none(tmp_path: Path, finished: tuple[Run, Row, float]) -> None:
     run, row, seconds = finished
     with open_store(tmp_path / "s.sqlite") as kept:
