@@ -15,14 +15,10 @@ from refimpl.measured.reading import RawHeights
 from refimpl.surfaces.surface import positive
 
 NEIGHBOURHOOD = 5  # points an axis
-PERCENTILE, PERCENTILE_TO_RMS = (
-    80,
-    1.2816,
-)  # percentile of absolute Gaussian distances: five of 25 points may be outliers
+PERCENTILE = 80  # percentile of absolute Gaussian distances: five of 25 points may be outliers
+PERCENTILE_TO_RMS = 1.2816  # factor from that percentile to their rms
 MAD_TO_RMS = 1.4826  # from the median of absolute Gaussian distances to their rms
-REACH = (
-    1.5  # cut-off wavelengths that a map is padded by; the weight there is exp(-1.5^2 pi^2 / ln 2) = 1e-14
-)
+REACH = 1.5  # cut-off wavelengths of padding: the weight there is exp(-1.5^2 pi^2 / ln 2) = 1e-14
 
 
 def check_preparation(channel: object, outliers: object, low_pass: object, high_pass: object) -> None:

@@ -54,6 +54,13 @@ def test_exact_zeros_are_neglected_at_no_cost(scene: rf.Scene, why: str) -> None
     assert "coupled" not in chosen.neglected
 
 
+def test_with_a_grid_alone_nothing_that_shear_does_is_small_enough() -> None:
+    chosen = planned(ROUGH, 64)
+    assert chosen.demand == 1e-8
+    assert chosen.neglected == ()
+    assert all(chosen.includes(name) for name in ("coupled", "oblique", "tilted", "active_set"))
+
+
 @pytest.mark.parametrize("accuracy", [0.3, 0.03, 0.001])
 def test_what_is_neglected_stays_within_its_budget(accuracy: float) -> None:
     chosen = planned(ROUGH, 256, demand=accuracy)

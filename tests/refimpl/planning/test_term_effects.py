@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import refimpl as rf
 from refimpl.model.materials import Pair
-from refimpl.planning.expected_contact import ExpectedContact
-from refimpl.planning.plan import estimated_memory
-from refimpl.planning.term_effects import Effect, Scales
-from refimpl.planning.terms import budget_of
+from refimpl.model.problem import Terms
+from refimpl.planning.expected_contact import ExpectedContact, solved_contact
+from refimpl.planning.plan import estimated_memory, make_plan
+from refimpl.planning.term_effects import Effect, Scales, effects_in
+from refimpl.planning.terms import budget_of, choose
 from refimpl.scene.discretise import discretise
 
 PAIR = Pair(lower=rf.Material(2e9, 0.25, hardness=90e6), upper=rf.Material(8e9, 0.1))
@@ -30,10 +32,37 @@ SCENE = rf.Scene(
 )
 
 
+def test_coupling_by_hand() -> None:
+    """c / a with lower minus upper; four patches halve the change of the area."""
+    c = [(1 + nu) * (1 - 2 * nu) / 2 / E for E, nu in ((2e9, 0.25), (8e9, 0.1))]
+    a = [(1 - nu**2) / E for E, nu in ((2e9, 0.25), (8e9, 0.1))]
+    strength = (c[0] - c[1]) / sum(a) * 0.3
+    local = 0.35 * strength
+    area = 2.0 * strength**2 + local / 2 + 2 * math.sqrt(local / 50)
+    tilt = 0.5 * (c[0] - c[1]) * 2.0 * 4.2e6
+    found = effects_of("coupled", Scales(CONTACT, PAIR, SCENE.friction))
+    assert found.area == pytest.approx(area)
+    assert found.friction == pytest.approx((tilt + local * 0.01 + 0.1 * area) / 0.3)
+
+
 def effects_of(name: str, scales: Scales) -> Effect:
     from refimpl.planning.term_effects import ESTIMATES
 
     return ESTIMATES[name](scales)
+
+
+def test_on_a_finer_grid_as_many_times_more_elements_touch() -> None:
+    """Of 36 elements two touch, so of 900 fifty; a coarser request changes nothing."""
+    problem = discretise(SCENE, SCENE.grid(6))
+    pressure = np.zeros((6, 6))
+    pressure[2, 2:4] = 2e6
+    contact = solved_contact(problem, pressure, CONTACT)
+    for elements, expected in ((900, 50), (18, 2), (None, 2)):
+        found = effects_in(("oblique",), problem, pressure, CONTACT, elements)
+        scales = Scales(replace(contact, elements=expected), problem.pair, problem.friction)
+        assert found == {"oblique": effects_of("oblique", scales)}
+    assert effects_in((), problem, pressure, CONTACT) == {}
+    assert effects_in(("oblique",), problem, 0 * pressure, CONTACT) == {}
 
 
 def test_tilt_by_hand() -> None:
@@ -66,6 +95,27 @@ def test_without_friction_a_symmetric_scene_has_a_hundredth_of_its_edge_as_budge
     found = [budget_of(problem, replace(CONTACT, symmetric=word), 1e-3) for word in (True, False)]
     assert found == pytest.approx([0.01 * 0.30 / math.sqrt(50 / 4 / math.pi), 5e-4], rel=0.02)
     assert budget_of(problem, replace(CONTACT, symmetric=True), 0.2) == 0.1
+
+
+def test_reasons_of_terms_that_come_with_others() -> None:
+    """The budget less the neglected coupling, a hundredth more and less than the tilt takes."""
+    problem, scales = discretise(SCENE, SCENE.grid(6)), Scales(CONTACT, PAIR, SCENE.friction)
+    sizes = {name: effects_of(name, scales).larger for name in ("coupled", "tilted")}
+    both, given = sum(sizes.values()), Terms(oblique=True)
+    for share, reason in ((1.01, "negligible"), (0.99, "shear moves the common surface")):
+        tilted = choose(problem, CONTACT, given, share * both)[2]
+        assert (tilted.reason, tilted.negligible) == (reason, share > 1)
+    assert choose(problem, CONTACT, given, 0.0)[2].reason == "comes with the coupling's kernel"
+
+
+def test_without_friction_slopes_that_are_all_of_mu_stay_and_facets_still_shear() -> None:
+    """A budget of half of mu: slopes are kept for mu's sake, when the cap is restored as well."""
+    problem = discretise(replace(SCENE, friction=rf.Friction()), SCENE.grid(6))
+    plan = make_plan(problem, demand=1.0, for_mu=True)
+    assert not make_plan(problem, demand=1.0).includes("oblique")
+    assert plan.restore(problem, "plastic").includes("oblique")
+    corrected = choose(problem, CONTACT, Terms(slope_correction=True), 1.0)
+    assert [term.included for term in corrected] == [True, True, True, True, False, False]
 
 
 def test_memory_is_of_the_grid_or_of_a_window_half_as_large_again() -> None:

@@ -57,16 +57,6 @@ def scene(law: Any = rf.Friction(tau=0.3e6, beta=0.2), **more: Any) -> rf.Scene:
     return rf.Scene(rf.Body(HARD, rf.Sphere(0.03)), rf.Body(SOFT, Ridge(5e-4)), law, 2.0, size=SIZE, **more)
 
 
-def test_a_surface_is_sampled_at_the_element_centres_of_a_rectangle_moved_by_the_offset() -> None:
-    """Centres of 3 x 2 elements at 0.2, 0.6, 1.0 mm and 0.225, 0.675 mm; sliding by 0.1 mm along y."""
-    slid = scene(sliding_direction=math.pi / 2, sliding_offset=1e-4)
-    lower, _ = slid.heights(slid.grid((3, 2)))
-    x, y = np.array([2e-4, 6e-4, 1e-3]) - 5e-4, np.array([2.25e-4, 6.75e-4]) + 1e-4
-    expected = -(x[:, None] ** 2) / 0.1 + 1e-7 * np.cos(2e4 * y)
-    np.testing.assert_allclose(lower - lower[0, 0], expected - expected[0, 0], rtol=0, atol=1e-20)
-    assert (slid.lower.surface + np.zeros((4, 4))).parts[0] == Ridge(5e-4)
-
-
 @pytest.mark.parametrize(
     "z",
     [np.zeros((2, 3)), 0.0, np.zeros((3, 2), complex), np.full((3, 2), "1")],

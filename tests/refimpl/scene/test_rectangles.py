@@ -90,19 +90,6 @@ def test_accuracy_on_a_rectangle() -> None:
     assert abs(found.friction_coefficient - fine.friction_coefficient) <= bar
 
 
-def test_a_start_may_be_a_coarser_rectangle() -> None:
-    scene = strip()
-    coarse = rf.solve(scene, (32, 20))
-    assert rf.solve(scene, (64, 40), start=coarse).friction_coefficient == pytest.approx(
-        rf.solve(scene, (64, 40)).friction_coefficient, rel=1e-7
-    )
-    for grid in ((64, 16), 31):
-        with pytest.raises(rf.InputError, match=r"^start = "):
-            rf.solve(scene, grid, start=coarse)
-    with pytest.raises(rf.InputError, match=r"start = '32 x 20 elements on 0\.002 x 0\.001 m'"):
-        rf.solve(strip((2e-3, 1.1e-3)), 64, start=coarse)
-
-
 # --- arrays ---
 
 
@@ -174,29 +161,6 @@ def test_scene_files_hold_sizes_and_rigid_bodies(tmp_path: Path) -> None:
 
 
 # --- rigid bodies ---
-
-
-@pytest.mark.parametrize(
-    ("rigid_upper", "nu", "slope_correction"), [(True, 0.3, False), (False, 0.5, True), (False, -0.5, False)]
-)
-def test_a_rigid_body_is_the_limit_of_stiff_ones(
-    rigid_upper: bool, nu: float, slope_correction: bool
-) -> None:
-    def solved(E: float) -> rf.Solution:
-        rigid, soft = rf.Material(E=E, nu=nu), COPPER
-        upper, lower = (rigid, soft) if rigid_upper else (soft, rigid)
-        rough = rf.GaussianRoughness(rms=3e-7, correlation_length=1.5e-4, seed=3)
-        scene = strip(upper=rf.Body(upper, rf.Sphere(0.14) + rough), lower=rf.Body(lower, rough))
-        return rf.solve(scene, 48, slope_correction=slope_correction)
-
-    limit, stiff = solved(math.inf), solved(1e100)
-    assert limit.converged
-    assert np.array_equal(limit.pressure, stiff.pressure)
-    assert limit.friction_coefficient == stiff.friction_coefficient
-    assert limit.uncertainty == stiff.uncertainty
-    assert limit.warnings == tuple(line for line in stiff.warnings if "is outside 1e+06" not in line)
-    assert limit.slope_error == stiff.slope_error
-    assert limit.bounds.friction_coefficient == stiff.bounds.friction_coefficient
 
 
 def test_two_rigid_bodies_are_refused() -> None:

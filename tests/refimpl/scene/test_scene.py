@@ -17,8 +17,6 @@ from refimpl.driver.options import Options
 from refimpl.grid import Array, Grid
 from refimpl.model.problem import Terms
 from refimpl.scene.discretise import discretise
-from refimpl.scene.parameters import differentiable_parameters, parameters
-from refimpl.scene.resolution import resolution
 
 STEEL = rf.Material(200e9, 0.3)
 ROUGH = rf.GaussianRoughness(rms=1e-6, correlation_length=400e-6, seed=7)
@@ -61,16 +59,6 @@ def test_sliding_samples_the_lower_surface_ahead_and_leaves_the_upper(angle: flo
         np.testing.assert_allclose(expected[:-1], still[1:], atol=1e-17)
 
 
-def test_a_scenes_grid_has_its_side_and_its_kind() -> None:
-    for periodic in (False, True):
-        scene = replace(SCENE, periodic=periodic)
-        assert scene.lengths == (1e-3, 1e-3)
-        assert scene.grid(16) == rf.Grid.square(1e-3, 16, periodic=periodic)
-    for count in (0, -1, 8.0, "8", True):
-        with pytest.raises(rf.InputError, match="grid"):
-            SCENE.grid(count)  # type: ignore[arg-type]  # the point of the test
-
-
 ROUGH_BALL = rf.read_scene("table1-rough")
 WIDTHS = (np.float32, np.float16, np.longdouble, np.int64, np.uint64, Fraction)
 
@@ -109,43 +97,6 @@ def test_the_written_forms_take_them() -> None:
 def measured(path: Path, shape: tuple[int, int]) -> rf.Body:
     np.save(path, np.random.default_rng(1).normal(size=shape))
     return rf.Body(STEEL, rf.MeasuredSurface(path, unit="um", pixel_size=1e-5))
-
-
-def test_the_roughness_that_is_resolved_worst_counts() -> None:
-    """Elements per length over those required: not the fewest elements."""
-    gaussian = rf.GaussianRoughness(1e-6, 6e-5, seed=1)
-    waves = rf.SelfAffineRoughness(
-        hurst=0.8, rms=1e-7, roll_off=2e-4, long_cut=4e-4, short_cut=5.4e-5, seed=2
-    )
-    grid = Grid((100, 50), (1e-3, 1e-3))  # elements of 10 x 20 um: the longer edge counts
-
-    def of(*parts: rf.Surface) -> tuple[float, float]:
-        lower = rf.Body(STEEL, sum(parts[1:], start=parts[0]))
-        scene = rf.Scene(rf.Body(STEEL, rf.Flat()), lower, rf.Friction(), 1.0, 1e-3)
-        found = resolution(scene, grid, 1e-3)
-        assert found is not None
-        assert found == resolution(replace(scene, lower=scene.upper, upper=lower), grid, 1e-3)
-        return found.elements, found.required
-
-    alone = [of(gaussian), of(waves)]
-    assert [elements for elements, _ in alone] == pytest.approx([3.0, 2.7])
-    assert alone[0][1] == pytest.approx(math.sqrt(math.log(10) / 1e-3), rel=1e-2)
-    worst = min(alone, key=lambda pair: pair[0] / pair[1])
-    assert worst == alone[0] != min(alone)
-    assert of(gaussian, waves) == of(waves, gaussian) == worst
-
-
-def test_parameters_that_are_zero_do_not_move() -> None:
-    lower = rf.Body(STEEL, rf.GaussianRoughness(1e-6, (1e-4, 2e-4), seed=3))
-    scene = rf.Scene(rf.Body(STEEL, rf.Sphere(0.1)), lower, rf.Friction(tau=0.0, beta=0.2), 7.0, 1e-3)
-    still = {"friction.tau", "lower.surface[0].lay", "lower.surface[0].seed"}
-    assert set(parameters(scene)) - set(differentiable_parameters(scene)) == still
-    rigid = replace(scene, upper=rf.Body(rf.Material(math.inf, 0.3), rf.Sphere(0.1)))
-    assert set(parameters(rigid)) - set(differentiable_parameters(rigid)) == {
-        *still,
-        "upper.material.E",
-        "upper.material.nu",
-    }
 
 
 @pytest.mark.parametrize("given", [{}, {"side": 1e-4}, {"size": (1.5e-4, 1e-4)}], ids=str)
@@ -250,21 +201,6 @@ def test_approaches_count_from_mean_planes_where_a_scene_is_periodic(grid: Grid)
     assert problem.approach == problem.datum - 1e-9
     assert not problem.counts_from_first_contact
     assert discretise(PLANES, grid).datum == problem.datum
-
-
-@pytest.mark.parametrize("method", ["fft", "dense"])
-def test_a_periodic_solution_reports_its_approach_from_mean_planes(method: str) -> None:
-    under_load = rf.solve(PLANES, 16, method=method, tolerance=1e-11)
-    problem = under_load.problem
-    assert under_load.approach < 0 < under_load.approach + problem.datum
-    touching, v = under_load.contact, under_load.clearance + under_load.approach + problem.datum
-    assert np.abs(v[touching] / (under_load.approach + problem.datum) - 1).max() < 1e-9
-    at_approach = rf.solve(PLANES, 16, method=method, approach=under_load.approach, tolerance=1e-11)
-    assert at_approach.approach == under_load.approach
-    assert at_approach.normal_force == pytest.approx(PLANES.load, rel=1e-7)
-    # that far apart, mean planes are separated by more than the mean gap: no contact
-    apart = rf.solve(PLANES, 16, method=method, approach=-1.001 * problem.datum)
-    assert apart.status is rf.Status.NO_CONTACT
 
 
 def test_the_least_approach_of_mean_planes_is_ten_units_in_the_last_place_of_their_gap() -> None:

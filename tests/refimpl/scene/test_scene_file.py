@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from pathlib import Path
 
-import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -16,51 +15,12 @@ from refimpl.model.friction import is_frictionless
 from refimpl.scene.scene_file import scene_from_dict, scene_to_dict
 from verification.sweep.study_file import read_study
 
-SPEC_EXAMPLE = """
-load = 70.0            # N
-side = 1.61e-3         # m
-sliding_direction = 0.5
-[upper.material]
-E = 200e9
-nu = 0.30
-[[upper.surface]]
-kind = "sphere"
-radius = 0.14
-[[upper.surface]]
-kind = "gaussian"
-rms = 0.084e-6
-correlation_length = 104e-6
-seed = 1
-[lower.material]
-E = 118e9
-nu = 0.30
-[[lower.surface]]
-kind = "measured"
-path = "surface.npy"
-pixel_size = 31.25e-6
-unit = "um"
-[friction]
-tau = 15e6
-beta = 0.08
-"""
-
 
 def test_a_name_gives_way_to_a_file_of_that_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = rf.scene_to_toml(rf.read_scene("hertz")).replace("load = 70.0", "load = 1.0")
     (tmp_path / "hertz").write_text(text)
     monkeypatch.chdir(tmp_path)
     assert rf.read_scene("hertz").load == 1.0
-
-
-@pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
-def test_measured_surfaces_are_relative_to_the_file(tmp_path: Path) -> None:
-    random = np.random.default_rng(0)
-    np.save(tmp_path / "surface.npy", random.normal(0, 0.5, (64, 64)))
-    (tmp_path / "scene.toml").write_text(SPEC_EXAMPLE)
-    scene = rf.read_scene(tmp_path / "scene.toml")
-    lower, _ = scene.heights(rf.Grid.square(scene.side, 32))
-    assert 0.5e-6 < np.ptp(lower) < 10e-6
-    assert scene.sliding_direction == 0.5
 
 
 def test_a_byte_order_mark_is_no_text(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.solution import display
-from refimpl.solution.arrays import UNITS, as_dataset, attributes_of, fields_of
+from refimpl.solution.arrays import as_dataset, attributes_of, fields_of
 from refimpl.solution.patches import patches_of
 
 
@@ -32,16 +32,6 @@ def oblong() -> rf.Solution:
     upper = rf.Body(rf.Material(7e9, 0.2, hardness=2e9), rf.Sphere(0.05))
     scene = rf.Scene(upper, lower, rf.Friction(1e6, 0.2), 5.0, size=(3e-3, 1.6e-3), sliding_direction=0.3)
     return rf.solve(scene, (6, 4), plastic=False)
-
-
-def test_error_is_the_sum_of_the_parts(rough: rf.Solution) -> None:
-    parts = rough.uncertainty["contact_area"]
-    assert rough.error("contact_area") == math.fsum(parts.values()) > 0
-    side = rough.grid.lengths[0]
-    assert rough.error("contact_area_share") == pytest.approx(rough.error("contact_area") / side**2)
-    assert all(rough.error(name) >= 0 for name in UNITS)
-    with pytest.raises(InputError, match="friction_coefficient"):
-        rough.error("mu")
 
 
 @pytest.mark.parametrize(

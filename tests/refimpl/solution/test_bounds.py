@@ -56,20 +56,6 @@ def test_bounds_hold_for_any_state(seed: int, kind: str) -> None:
     assert min(ratios) > 1e-4  # useful bounds: the norm is at most a hundred times the true error's
 
 
-@pytest.mark.parametrize("oblique", [False, True])
-@pytest.mark.parametrize("factor", [0.9, 1.1])
-def test_the_exact_state_of_another_load_is_bounded_by_the_load_error_alone(
-    factor: float, oblique: bool
-) -> None:
-    base = scene(2, tau=0.0)
-    other = rf.solve(replace(base, load=factor * base.load), M, tolerance=1e-12, oblique=oblique)
-    problem = replace(other.problem, load=base.load)
-    bounds = proven_bounds(problem, other.pressure, other.traction, other.slopes)
-    ratio = assert_true(bounds, problem, other.pressure, other.traction, other.slopes)
-    assert ratio > 0.1
-    assert bounds.normal_force == pytest.approx(abs(factor - 1) * base.load)
-
-
 def test_elements_that_the_state_forgot_are_bounded() -> None:
     """One of four flat elements carries just so much that its neighbours' gap is closed to nothing: on them
     the correction would overshoot, and without that part the bound would be 9 % short in the norm."""

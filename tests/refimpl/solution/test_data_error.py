@@ -53,25 +53,6 @@ def waves(upper: Surface, lower: Surface, *, periodic: bool = True) -> rf.Scene:
 MEASURED = Wave(3e-6, wavelength=4e-3, data=0.25e-3)  # 16 points a wave
 
 
-@pytest.mark.parametrize(
-    ("elements", "share"),
-    [
-        ((4, 2), 0.12269),  # 1 - sin 45 / (4 sin 11.25) = 0.09387 and 1.5 * 0.01921
-        ((8, 4), 0.04804),  # 1 - sin 22.5 / (2 sin 11.25) = 1 - cos 11.25: 2.5 * 0.01921
-        ((16, 8), 0.02882),  # at the pitch nothing is missed
-        ((64, 32), 0.02882),  # nor on finer elements
-    ],
-)
-def test_a_wave_of_16_points(elements: tuple[int, int], share: float) -> None:
-    """Differences over d have the rms gradient sqrt(2) a sin(pi d / l) / d: in a / (4 p) 4 sin(11.25 degrees)
-    at the pitch p, sin(45) at 4 p, and in the last octave sin(22.5) / (2 sin(11.25)) = cos(11.25) = 0.98079.
-    """
-    scene = waves(rf.Flat(), MEASURED)
-    assert data_error(scene, Grid(elements, LENGTHS, True)) == pytest.approx(share, abs=6e-6)
-    upside = waves(MEASURED, rf.Flat())
-    assert data_error(upside, Grid(elements, LENGTHS, True)) == pytest.approx(share, abs=6e-6)
-
-
 def test_roughness_by_formula_beside_the_data_makes_them_matter_less() -> None:
     """At d = 2 p, in (a / d)^2: 2 sin^2(22.5) = 0.29289 of the data on the grid and in the octave above,
     8 sin^2(11.25) = 0.30448 at the pitch; beside it 2 (b / a)^2 sin^2(45) = 0.25 of a wave across, b = a / 2.
@@ -144,18 +125,6 @@ def ball(approach: float, elements: tuple[int, int]) -> tuple[Mask, dict[str, di
     problem = discretise(scene, Grid(elements, LENGTHS, False), Terms(oblique=False), approach=approach)
     state = solve_reference(problem)
     return state.contact, unseen_parts(problem, state, scene), state.contact_area
-
-
-def test_a_contact_that_the_border_cuts_goes_on_beyond_it() -> None:
-    """8 of the 48 widths round 16 x 8 elements are in contact. As dense, it goes on over 8 / 48 of another
-    domain of 8 mm^2: 4/3 mm^2 beside the 52 elements of 1/16 mm^2 found.
-    """
-    contact, parts, area = ball(18e-6, (16, 8))
-    assert (int(contact.sum()), int(contact[:, 0].sum()), int(contact[:, -1].sum())) == (52, 4, 4)
-    assert area == pytest.approx(3.25e-6)
-    assert parts["contact_area"] == pytest.approx({"border": 4 / 3 * 1e-6, "data": 0.0})
-    mu = parts["friction_coefficient"]["border"]  # tau A / N + beta, by 0.41 of itself
-    assert mu > 0.15 * (4 / 3) / 3.25
 
 
 def test_a_contact_that_goes_on_by_half_of_itself_has_no_bar() -> None:

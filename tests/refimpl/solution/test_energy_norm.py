@@ -10,7 +10,6 @@ import pytest
 
 import refimpl as rf
 from refimpl.bounds.energy_norm import _ROUNDING, EnergyNorm, smallest_symbol
-from refimpl.kernels import normal_table
 from tests.refimpl.solution.frozen import M, posed, scene, widened
 from verification.exact.dense_influence import DenseInfluence
 
@@ -80,22 +79,6 @@ def test_dual_norm_is_a_bound_whatever_conjugate_gradients_return(monkeypatch: p
     for share in (0.0, 0.5, 1.5):
         monkeypatch.setattr(norm, "solve", lambda *_, share=share: (share * z, share * az))
         assert 0.99 * exact <= norm.dual_norm(right, where) < math.inf
-
-
-ASPECTS = [0.1, 0.5, 0.99, 1.0, 1.3, 3.0, 10.0]
-"""Of elements without end: ``sum (-1)^m 2 pi/|k| 2/k`` over ``k = (2 m + 1) pi``."""
-
-
-@pytest.mark.parametrize(
-    ("aspect", "accuracy"), [*((a, 5e-10) for a in ASPECTS), (0.01, 1e-10), (300.0, 1e-4)]
-)
-def test_it_is_the_alternating_sum_of_the_coefficients(aspect: float, accuracy: float) -> None:
-    """Of 1000 offsets an axis, with the mean of the last partial sums: enough as long as these are many
-    lengths of an element's longer edge."""
-    table = normal_table(1000, 1000, 1.0, aspect)
-    weights = np.where(np.arange(1000) % 2, -2.0, 2.0)
-    weights[0], weights[-1] = 1.0, 0.5 * weights[-1]
-    assert smallest_symbol(aspect) == pytest.approx(float(weights @ table @ weights), rel=accuracy)
 
 
 @pytest.mark.parametrize(

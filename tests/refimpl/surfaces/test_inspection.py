@@ -106,16 +106,6 @@ def test_parameters_agree_with_surfalize(
 # --- missing points, lay, what a map does not tell ---
 
 
-def test_missing_points_are_left_out() -> None:
-    z = gaussian(seed=3)
-    holed = z.copy()
-    holed[:40, :30] = holed[100:120, 50:90] = np.nan
-    full, part = (Autocorrelation.of(values, PIXEL).distances(0.2).mean() for values in (z, holed))
-    assert part == pytest.approx(full, rel=0.05)
-    assert height_parameters(holed)["Sq"] == pytest.approx(height_parameters(z)["Sq"], rel=0.05)
-    assert mean_square_slopes(holed, PIXEL) == pytest.approx(mean_square_slopes(z, PIXEL), rel=0.05)
-
-
 @pytest.mark.parametrize("lay", [0.0, 0.5, 2.9])
 def test_a_lay_is_found(tmp_path: Path, lay: float) -> None:
     np.save(tmp_path / "a.npy", gaussian(WITH_LAY | {"lay": lay, "lx": 50e-6, "ly": 10e-6}, 1))
@@ -260,15 +250,6 @@ def test_fits_that_cannot_be(kind: str, z: np.ndarray) -> None:
 
 N = 64
 X = (np.arange(N) + 0.5) / N
-WAVE = np.sin(2 * np.pi * 4 * X)[:, None] * np.ones(N)
-
-
-def test_moments_of_a_wave() -> None:
-    # mean of sin^2 is 1/2, of sin^4 3/8; equidistant points sum them exactly
-    assert abs(stats.rms_height(3 + WAVE) - math.sqrt(0.5)) < 1e-15 * N
-    assert abs(stats.skewness(WAVE)) < 1e-14
-    assert abs(stats.kurtosis(5 - WAVE) - 1.5) < 1e-13
-    assert abs(stats.skewness(np.array([[0.0, 0.0, 0.0, 1.0]])) - 2 / math.sqrt(3)) < 1e-15
 
 
 def test_slopes_are_exact_for_bilinear_heights_and_know_their_axis() -> None:

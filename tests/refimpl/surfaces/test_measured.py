@@ -56,14 +56,6 @@ def test_heights_are_those_of_one_spline_through_all_points(
     np.testing.assert_allclose(quietly(surface, grid, offset), whole, rtol=0, atol=1e-12 * np.ptp(whole))
 
 
-def test_the_whole_measured_width_can_be_used(tmp_path: Path) -> None:
-    x, y = points()
-    surface, grid = write_npy(tmp_path / "a.npy", x**2 - x * y), Grid.square(NX * DX, 2 * NX)
-    for offset in ((0.0, 0.0), (0.0, 3.25e-6), (0.0, -3.25e-6)):  # to either end of y, half a pixel further
-        x, y = elements(grid, offset)
-        np.testing.assert_allclose(quietly(surface, grid, offset), x**2 - x * y, rtol=0, atol=1e-12 * 1e-10)
-
-
 MEASURED = r"side = {:g}: expected at most the measured 9e-06 x 1\.55e-05 m"
 LEAST = r"side = {:g}: expected at least 4 pixels of a\.npy, each 1\.5e-07 x 3\.1e-07 m"
 
@@ -120,20 +112,6 @@ def holed(z: np.ndarray) -> np.ndarray:
     holes[20:24, 20:25] = np.nan
     holes[35, 30] = holes[3, 3] = np.nan
     return holes
-
-
-def test_gaps_are_filled_and_counted(tmp_path: Path) -> None:
-    x, y = points()
-    harmonic = 1e-8 * ((x / DX) ** 2 * (DX / DY) ** 2 - (y / DY) ** 2) / 100 + x / 50
-    surface = write_npy(tmp_path / "a.npy", holed(harmonic))
-    grid = Grid.square(SIDE, 24)
-    with pytest.warns(SurfaceWarning, match="21 of 1404 points in the window are missing"):
-        z = surface.heights(grid)
-    assert np.all(np.isfinite(z))
-    full = quietly(write_npy(tmp_path / "b.npy", harmonic), grid)
-    # x^2 / dx^2 ... solves the five-point equation on these pixels exactly: filling restores it
-    np.testing.assert_allclose(z, full, rtol=0, atol=1e-12 * np.ptp(full))
-    assert "21 of" in surface.describe(grid)[-1]
 
 
 def test_filled_heights_obey_the_maximum_principle() -> None:

@@ -104,22 +104,6 @@ def test_spectrum_is_zero_beyond_its_cuts(ensemble: list[Modes]) -> None:
         assert outside < 1e-15  # of heights of unit rms; the smallest inside are 1e-4
 
 
-def test_rms_height_and_gradient(ensemble: list[Modes]) -> None:
-    """Mean squares over the period: sums of a^2 w^2, of variance 2 sum a^4. The gradient's expectation is
-    that of the waves there are; the integral's is near to it."""
-    for power in (0, 2):
-        found, expected, variance = 0.0, 0.0, 0.0
-        for modes in ensemble:
-            weight = np.hypot(modes.qx, modes.qy) ** power
-            found += float((weight * np.abs(modes.coefficients) ** 2).sum())
-            expected += float((weight * modes.expected).sum())
-            variance += 2 * float((weight**2 * modes.expected**2).sum())
-        assert abs(found - expected) < 4 * math.sqrt(variance)
-        of_one = expected / len(ensemble)
-        integral = 1.0 if power == 0 else rough(rms=1.0).rms_gradient ** 2
-        assert of_one == pytest.approx(integral, rel=1e-12 if power == 0 else 0.05)
-
-
 def test_lay_stretches_the_spectrum() -> None:
     """Periodic: chi-square of each wave by C(sqrt(g^2 q_along^2 + q_across^2)), in bands and in sectors."""
     g, lay = 3.0, 0.7
@@ -333,14 +317,6 @@ def test_the_field_is_the_plain_sum_of_waves(shear: float, count: tuple[int, int
     size = math.sqrt(torus.mean_squares(falling)[0])
     # phases of up to 1e3 rad round by 1e-13 in the plain sum as well; waves add up as their squares do
     np.testing.assert_allclose(torus.field(falling, 5, x, y), plain, rtol=0, atol=3e-13 * size)
-
-
-def test_mean_squares_are_the_sums_over_all_waves() -> None:
-    torus = PeriodicLattice((1.3, 2.1), (15, 25), 0.4)
-    qx, qy = torus.wave_vectors(np.arange(-15, 16.0), np.arange(-25, 26.0))
-    power = falling(qx, qy) ** 2
-    expected = power.sum(), (power * (qx**2 + qy**2)).sum()
-    np.testing.assert_allclose(torus.mean_squares(falling), expected, rtol=1e-13)
 
 
 def test_wave_vectors_are_the_gradients_of_the_phases() -> None:

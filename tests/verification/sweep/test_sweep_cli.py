@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 import sys
 from pathlib import Path
@@ -12,7 +11,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from tests.verification.cli.commands import OBLONG, Stream, answer, run, shown
+from tests.verification.cli.commands import Stream, answer, run, shown
 from verification.cli.sweep import _Line
 from verification.sweep import engine
 from verification.sweep.curves import curves
@@ -68,16 +67,6 @@ def test_a_sweep_over_maps_has_one_size_for_all_offsets_and_a_curve_for_each() -
         "low.npy": 3,
         "other.npy": 3,
     }
-
-
-def test_a_sweep_of_a_rectangle() -> None:
-    Path("scene.toml").write_text(OBLONG)
-    Path("study.toml").write_text('scene = "scene.toml"\n[vary]\ngrid = [24]\nload = [1.0, 5.0]\n')
-    assert [run.inputs["scene"]["size"] for run in read_study("study.toml").runs()] == [[2e-3, 1e-3]] * 2
-    row = answer("sweep study.toml --workers 1")["rows"][-1]
-    assert (row["elements_x"], row["elements_y"]) == (24, 12)
-    mu = rf.solve(rf.read_scene("scene.toml"), 24).friction_coefficient
-    assert math.isclose(row["friction_coefficient"], mu, rel_tol=1e-12)
 
 
 def test_runs_that_did_not_converge_are_no_success() -> None:

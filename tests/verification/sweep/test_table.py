@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
 import sys
@@ -20,7 +18,7 @@ from refimpl.solution.limits import Limit, ModelWarning
 from verification.cli import plot_curves
 from verification.sweep import export, run
 from verification.sweep.curves import Point, curves
-from verification.sweep.export import EXPORTED, header, to_csv, unit_of, write_csv, write_parquet
+from verification.sweep.export import EXPORTED, header, unit_of, write_parquet
 from verification.sweep.quality import points_of, quality_of, warnings_of
 from verification.sweep.run import COORDINATES, Row, outcome
 from verification.sweep.store import COLUMNS
@@ -114,15 +112,6 @@ def exported() -> list[Row]:
         | {"key": key, "contact_area": area, "correlation_length": length, "status": "converged"}
         for key, area, length in values
     ]
-
-
-def test_csv_reads_back_exactly_and_in_order(tmp_path: Path) -> None:
-    write_csv(exported(), tmp_path / "t.csv")
-    found = list(csv.DictReader(io.StringIO((tmp_path / "t.csv").read_text())))
-    assert [name.partition(" [")[0] for name in found[0]] == [*COLUMNS, "seconds"]
-    assert [(r["key"], float(r["contact_area [m^2]"])) for r in found] == [("b", 1 / 3), ("a", 1e-300)]
-    assert [r["correlation_length [m]"] for r in found] == ["", "2.0"]
-    assert to_csv(exported()[::-1]) != to_csv(exported())
 
 
 def test_parquet_reads_back_exactly(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
