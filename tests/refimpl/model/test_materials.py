@@ -1,4 +1,4 @@
-"""Compliances in exact numbers, the friction law of Eqs (1) and (8), and signs of Eq. (7)."""
+"""Compliances in exact numbers, and the friction law of Eqs (1), (8) and (10)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The discrete problem: tractions that enter, displacements, slopes, load weights, forces, areas."""
+"""The discrete problem: slopes of surfaces, exact sums of forces, areas of contact."""
 
 from __future__ import annotations
 

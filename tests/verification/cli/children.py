@@ -1,4 +1,4 @@
-"""Child processes that limits, signals and shortages are tried on, and stores that sweeps left."""
+"""Child processes that limits, signals and shortages are tried on, and a small study."""
 
 from __future__ import annotations
 
