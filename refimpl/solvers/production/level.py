@@ -196,7 +196,7 @@ class LevelSolver:
         active = self.lagged.active
         among = active.elements if isinstance(active, FixedSet) else None
         share = min(constants.UNDECIDED * self._goal, constants.MOST_UNDECIDED)
-        return self.cg.undecided(self._stiffness, among) <= share * np.count_nonzero(self.cg.contact)
+        return self.cg.undecided(self._stiffness, among) <= share * float(np.count_nonzero(self.cg.contact))
 
     def _status(self) -> Status:
         if self.residual <= self._goal:
