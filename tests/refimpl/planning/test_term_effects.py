@@ -78,6 +78,14 @@ def test_on_a_finer_grid_as_many_times_more_elements_touch() -> None:
     assert effects_in(("oblique",), problem, 0 * pressure, CONTACT) == {}
 
 
+@pytest.mark.parametrize(("mean", "included"), [(29e6, False), (31e6, True)])
+def test_the_cap_enters_where_three_mean_pressures_reach_the_hardness(mean: float, included: bool) -> None:
+    problem = discretise(SCENE, SCENE.grid(6))
+    terms = choose(problem, replace(CONTACT, mean_pressure=mean), Terms(), 1e-8)
+    (cap,) = (term for term in terms if term.name == "plastic")
+    assert cap.included is included
+
+
 def test_tilt_by_hand() -> None:
     """Half of both tilts; they turn mu = 0.3 into slopes once more, and with it the area."""
     scales = Scales(CONTACT, PAIR, SCENE.friction)
