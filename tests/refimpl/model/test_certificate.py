@@ -143,6 +143,16 @@ def test_each_residual_counts_and_nan_never_passes(field: str) -> None:
     assert not replace(clean, **{field: np.nan}).satisfies(1.0)
 
 
+@pytest.mark.parametrize("factor", [0.0, -1.0])
+def test_at_an_approach_only_contact_has_a_load_error(factor: float) -> None:
+    """Without a positive resultant there is no mean separation; other residuals judge such a state."""
+    pressure = factor * SOLVED.pressure
+    pressure.flat[0] = -0.1 * factor * SOLVED.max_pressure
+    certificate = judged(pressure, 0 * pressure, approach=SOLVED.approach).certificate
+    assert certificate.load_error == 0
+    assert certificate.penetration > 0.1
+
+
 def test_an_element_that_pulls_is_no_contact() -> None:
     """There is no tau on it, and its slopes do not count."""
     pressure, traction = SOLVED.pressure.copy(), SOLVED.traction.copy()
@@ -254,3 +264,17 @@ def test_a_punch_that_yields_everywhere_is_solved_at_an_approach(method: Method,
     s = rf.solve(scene, 4, method=method, approach=touch, oblique=False)
     assert s.status is rf.Status.CONVERGED
     np.testing.assert_array_equal(s.pressure, np.where(gap == 0, 1e6, 0.0))
+
+
+def test_slopes_without_the_indentation_are_not_those_of_the_common_surface() -> None:
+    s = rf.solve(HARD, 16, method="dense", oblique=True)
+    operator = DenseInfluence(s.grid, s.sliding_direction)
+    lower, upper = s.problem.displacements(operator, s.pressure, s.traction, s.slopes)
+    elastic = s.problem.slopes(lower, upper, None)
+    with_it = certify(s.problem, operator, s.pressure, s.traction, s.slopes, s.plastic_indentation)
+    without = certify(s.problem, operator, s.pressure, s.traction, elastic, None)
+    assert with_it.certificate.slope < 1e-10
+    assert without.certificate.slope > 1e-5
+    # the indented surfaces touch: an element's slopes count in Eq. (6), by 1e-6 of 1 um and more here
+    assert with_it.plastic.sum() > 3
+    assert np.abs(with_it.gap[with_it.contact]).max() < 1e-10 * with_it.approach

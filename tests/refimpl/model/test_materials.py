@@ -1,4 +1,4 @@
-"""Compliances in exact numbers, and the friction law of Eqs (1), (8) and (10)."""
+"""Compliances in exact numbers, the friction law of Eqs (1), (8) and (10), and shear on two bodies."""
 
 from __future__ import annotations
 
@@ -7,7 +7,10 @@ import math
 import numpy as np
 import pytest
 
+import refimpl as rf
 from refimpl.errors import InputError
+from refimpl.grid import Grid
+from refimpl.model.elasticity import Elasticity
 from refimpl.model.friction import (
     Friction,
     friction_coefficient_at,
@@ -15,7 +18,8 @@ from refimpl.model.friction import (
     is_frictionless,
     shear_at,
 )
-from refimpl.model.materials import Material
+from refimpl.model.materials import Material, Pair
+from verification.exact.dense_influence import DenseInfluence
 
 
 def test_hand_made_numbers() -> None:
@@ -65,3 +69,28 @@ def test_of_smooth_contact_mu_follows_from_the_mean_pressure() -> None:
 def test_parameters_out_of_range_are_refused(field: str, value: float) -> None:
     with pytest.raises(InputError, match=rf"^friction\.{field} = "):
         Friction(**{field: value})
+
+
+SOFT, HARD = rf.Material(2e9, 0.1), rf.Material(50e9, 0.4)
+PAIR = Pair(lower=SOFT, upper=HARD)
+GRID = Grid((6, 9), (1e-3, 2e-3))
+ANGLE = 0.7
+RANDOM = np.random.default_rng(4)
+F, R = RANDOM.uniform(0, 5e6, (2, 6, 9))
+SWITCHES = [(True, True), (True, False), (False, True), (False, False)]
+
+
+@pytest.mark.parametrize(("coupled", "tilted"), SWITCHES)
+def test_shear_couples_by_the_difference_and_tilts_by_the_sum(coupled: bool, tilted: bool) -> None:
+    """Either part of what shear does to two bodies may be neglected; both together are each body's own."""
+    elasticity = Elasticity(PAIR, coupled, tilted)
+    shear = DenseInfluence(GRID, ANGLE).shear(R)
+    lower, upper = elasticity.body_displacements(0 * F, 0 * F, shear if elasticity.shear_displaces else None)
+    c_lower, c_upper = SOFT.shear_compliance, HARD.shear_compliance
+    bound = 1e-14 * np.abs(c_lower * shear).max()
+    closing, tilting = lower + upper, upper - lower
+    np.testing.assert_allclose(closing, coupled * (c_lower - c_upper) * shear, rtol=0, atol=bound)
+    np.testing.assert_allclose(tilting, -tilted * (c_lower + c_upper) * shear, rtol=0, atol=bound)
+    np.testing.assert_allclose(elasticity.gap_by_shear(shear), closing, rtol=0, atol=bound)
+    assert Elasticity(PAIR) == Elasticity(PAIR, coupled=True, tilted=True)
+    assert elasticity.coupling_ratio == (PAIR.shear_compliance / PAIR.normal_compliance if coupled else 0)

@@ -139,6 +139,14 @@ def test_at_an_approach_half_of_the_elements_that_interfere_touch(grid: Grid, ap
     assert found.elements == max(1, np.count_nonzero(problem.gap < approach) // 2)
 
 
+@pytest.mark.parametrize("approach", [0.0, -1e-6])
+def test_an_approach_that_hardly_loads_anything_has_a_least_pressure(approach: float) -> None:
+    problem = posed(BALL.grid(8), np.zeros((8, 8)), load=None, approach=approach)
+    found = expected_contact(problem)
+    assert found.elements == 1
+    assert found.mean_pressure == pytest.approx(1e-12 * problem.pair.reduced_modulus)
+
+
 @pytest.mark.parametrize(("direction", "axis"), [(0.0, 1), (QUARTER_TURN, 0), (math.pi, 1), (0.3, None)])
 @pytest.mark.parametrize("shape", [(8, 8), (8, 5)])
 def test_mirror_images_across_the_sliding_line(

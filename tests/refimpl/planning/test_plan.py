@@ -87,6 +87,12 @@ def test_a_slope_correction_needs_the_coupling() -> None:
     assert caught.value.field == "coupled"
 
 
+def test_tau_that_moves_nothing_has_no_active_set_to_iterate() -> None:
+    chosen = planned(TWINS, 32, oblique=False)
+    assert not chosen.includes("active_set")
+    assert "moves nothing" in chosen.term("active_set").reason
+
+
 @pytest.mark.parametrize("grid", [SMOOTH.grid(128), RECTANGLE], ids=str)
 def test_hertz_is_expected(grid: Grid) -> None:
     """Area, approach and mean pressure of the smooth ball, to the grid's resolution."""

@@ -32,6 +32,19 @@ SCENE = rf.Scene(
 )
 
 
+def test_slope_terms_by_hand() -> None:
+    """mu = 0.2 + 1 MPa / 10 MPa; tilts pi c 2 (0.2 * 16 MPa + 1 MPa), pi c = (1 + nu)(1 - 2 nu) / (2 E)."""
+    lower, upper = ((1 + nu) * (1 - 2 * nu) / 2 / E * 2.0 * 4.2e6 for E, nu in ((2e9, 0.25), (8e9, 0.1)))
+    scales = Scales(CONTACT, PAIR, SCENE.friction)
+    assert scales.tilts == pytest.approx((lower, upper))
+    slope = lower + 4e-4 + 1.5 * 0.002 + 0.4 * 0.01 + 2.0 * 0.1 * 0.02
+    local = 0.3 * slope + 4e-4
+    area = local + 2 * math.sqrt(local / 50)
+    found = effects_of("oblique", scales)
+    assert found.area == pytest.approx(area)
+    assert found.friction == pytest.approx(((1 + 0.09) * slope + 0.1 * area) / 0.3)
+
+
 def test_coupling_by_hand() -> None:
     """c / a with lower minus upper; four patches halve the change of the area."""
     c = [(1 + nu) * (1 - 2 * nu) / 2 / E for E, nu in ((2e9, 0.25), (8e9, 0.1))]
@@ -63,6 +76,14 @@ def test_on_a_finer_grid_as_many_times_more_elements_touch() -> None:
         assert found == {"oblique": effects_of("oblique", scales)}
     assert effects_in((), problem, pressure, CONTACT) == {}
     assert effects_in(("oblique",), problem, 0 * pressure, CONTACT) == {}
+
+
+@pytest.mark.parametrize(("mean", "included"), [(29e6, False), (31e6, True)])
+def test_the_cap_enters_where_three_mean_pressures_reach_the_hardness(mean: float, included: bool) -> None:
+    problem = discretise(SCENE, SCENE.grid(6))
+    terms = choose(problem, replace(CONTACT, mean_pressure=mean), Terms(), 1e-8)
+    (cap,) = (term for term in terms if term.name == "plastic")
+    assert cap.included is included
 
 
 def test_tilt_by_hand() -> None:

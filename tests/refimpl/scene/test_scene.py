@@ -17,6 +17,7 @@ from refimpl.driver.options import Options
 from refimpl.grid import Array, Grid
 from refimpl.model.problem import Terms
 from refimpl.scene.discretise import discretise
+from refimpl.scene.resolution import resolution
 
 STEEL = rf.Material(200e9, 0.3)
 ROUGH = rf.GaussianRoughness(rms=1e-6, correlation_length=400e-6, seed=7)
@@ -97,6 +98,30 @@ def test_the_written_forms_take_them() -> None:
 def measured(path: Path, shape: tuple[int, int]) -> rf.Body:
     np.save(path, np.random.default_rng(1).normal(size=shape))
     return rf.Body(STEEL, rf.MeasuredSurface(path, unit="um", pixel_size=1e-5))
+
+
+def test_the_roughness_that_is_resolved_worst_counts() -> None:
+    """Elements per length over those required: not the fewest elements."""
+    gaussian = rf.GaussianRoughness(1e-6, 6e-5, seed=1)
+    waves = rf.SelfAffineRoughness(
+        hurst=0.8, rms=1e-7, roll_off=2e-4, long_cut=4e-4, short_cut=5.4e-5, seed=2
+    )
+    grid = Grid((100, 50), (1e-3, 1e-3))  # elements of 10 x 20 um: the longer edge counts
+
+    def of(*parts: rf.Surface) -> tuple[float, float]:
+        lower = rf.Body(STEEL, sum(parts[1:], start=parts[0]))
+        scene = rf.Scene(rf.Body(STEEL, rf.Flat()), lower, rf.Friction(), 1.0, 1e-3)
+        found = resolution(scene, grid, 1e-3)
+        assert found is not None
+        assert found == resolution(replace(scene, lower=scene.upper, upper=lower), grid, 1e-3)
+        return found.elements, found.required
+
+    alone = [of(gaussian), of(waves)]
+    assert [elements for elements, _ in alone] == pytest.approx([3.0, 2.7])
+    assert alone[0][1] == pytest.approx(math.sqrt(math.log(10) / 1e-3), rel=1e-2)
+    worst = min(alone, key=lambda pair: pair[0] / pair[1])
+    assert worst == alone[0] != min(alone)
+    assert of(gaussian, waves) == of(waves, gaussian) == worst
 
 
 @pytest.mark.parametrize("given", [{}, {"side": 1e-4}, {"size": (1.5e-4, 1e-4)}], ids=str)

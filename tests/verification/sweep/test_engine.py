@@ -122,6 +122,7 @@ def test_a_refusal_leaves_a_store_that_holds_something(tmp_path: Path, kept: int
 
 # --- kills ---
 
+
 def status(pid: int | str) -> list[str]:
     """State and parent of a process, from /proc; empty when it has ended."""
     try:
