@@ -39,8 +39,8 @@ EXAMPLES = {
     ),
     "corrected_friction": (
         [],
-        " 64  summed 0.1051, corrected 0.1001 +- 0.0023\n"
-        " 96  summed 0.1043, corrected 0.1009 +- 0.0009\n"
+        " 64  summed 0.1051, corrected 0.1005 +- 0.0023\n"
+        " 96  summed 0.1043, corrected 0.1010 +- 0.0008\n"
         "128  summed 0.1036, corrected 0.1011 +- 0.0005\n"
         "192  summed 0.1024, corrected 0.1011 +- 0.0002\n"
         "256  summed 0.1021, corrected 0.1011 +- 0.0001\n"
