@@ -87,12 +87,12 @@ def summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 
 def work_ratios(table: Iterable[Mapping[str, Any]]) -> dict[str, float]:
-    """Return the work for the corrected mu over that for the summed one, by class that reaches the former."""
+    """Return the work for the corrected mu over that for the summed one, by class that reaches both."""
     work = {(row["class"], row["number"]): row["median_work"] for row in table}
     return {
-        kind: found / (work[kind, SUMMED] or math.inf)
+        kind: found / work[kind, SUMMED]
         for (kind, number), found in work.items()
-        if number == CORRECTED and found
+        if number == CORRECTED and found and work[kind, SUMMED]
     }
 
 

@@ -79,7 +79,7 @@ def test_a_summary_of_costs_known_values() -> None:
         "compared": 3,
         "median_cost": 2.0,
         "cost_at_most_2": pytest.approx(2 / 3),
-        "median_work": 7.0,  # of 4, 6, 8 and infinity
+        "median_work": 7.0,  # between 6 and 8: what is not met takes more
         "median_forecast_over_last": 1.25,
         "forecast_within_2": pytest.approx(2 / 3),
     }
