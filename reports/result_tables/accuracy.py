@@ -69,7 +69,7 @@ def costs(benchmarks: Mapping[str, Any]) -> str:
         "Table 1's contact to a relative duality gap of 1e-8, recomputed for every code. Seconds of this "
         "code: the solver alone; from a scene to numbers with error bars; with friction; with friction and "
         "slopes. Of other codes: ratio of their time to this code's with error bars, median of the newest "
-        "run on that grid. Runs are of several machines."
+        "run on that grid. Runs are of several machines, and of one thread or more, as the report states."
     )
     return section("Time", text, head, rows)
 

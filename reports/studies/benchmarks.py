@@ -95,9 +95,15 @@ def _seconds(kind: str, newest: Mapping[tuple[str, int], Sequence[Row]]) -> tupl
     codes = list(dict.fromkeys(row["code"] for row in timed if not row["code"].startswith(f"{OURS}+")))
     grids = sorted({row["M"] for row in timed})
     medians = {(row["code"], row["M"]): row["seconds"]["median"] for row in timed}
+    grids_of: dict[int, set[int]] = {}
+    for row in timed:
+        grids_of.setdefault(row["threads"], set()).add(row["M"])
+    threads = ", ".join(
+        f"{n} at {', '.join(f'{M}²' for M in sorted(found))}" for n, found in sorted(grids_of.items())
+    )
     figure = curves(
         "*",
-        f"Seconds over the grid at a recomputed gap of 1e-8, {kind} flat.",
+        f"Seconds over the grid at a recomputed gap of 1e-8, {kind} flat. Threads: {threads}.",
         "M",
         {code: code for code in codes},
         xlabel="elements per side",
