@@ -10,7 +10,7 @@ from refimpl.kernels import normal_integral
 from verification.solver_suite import suite
 from verification.solver_suite.protocol import Abilities, Answer, ContactProblem
 
-ONLY = sys.argv[1] if len(sys.argv) > 1 else "contestant/*"
+ONLY = sys.argv[1] if len(sys.argv) > 1 else "solver/*"
 PICTURE = sys.argv[2] if len(sys.argv) > 2 else "check_my_solver.png"
 
 

@@ -12,7 +12,7 @@
 from refimpl.driver.solve import solve
 from refimpl.errors import InputError
 from refimpl.grid import Grid
-from refimpl.measured import Inspection, MeasuredSurface, inspect
+from refimpl.measured import Inspection, MeasuredSurface, inspect_surface
 from refimpl.model.friction import Friction, FrictionLaw
 from refimpl.model.materials import Material
 from refimpl.model.state import Status
@@ -52,7 +52,7 @@ __all__ = [
     "Surface",
     "SurfaceSum",
     "SurfaceWarning",
-    "inspect",
+    "inspect_surface",
     "read_scene",
     "scene_to_toml",
     "sensitivity",

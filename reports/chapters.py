@@ -96,7 +96,7 @@ CHAPTERS = (
         "Appendix II: other codes, and yours",
         "The suite that any contact solver can be run through, its results for published codes, and tests of "
         "the suite with faulty solvers.",
-        ("contestant", "contestants"),
+        ("solver", "solver_suite"),
         ("cross_code",),
     ),
     Chapter(

@@ -117,8 +117,8 @@ def check(results: object) -> Mapping[str, Any]:
     _check_values(results, "the file")
     _require(results, FILE, "the file")
     _require(results["provenance"], PROVENANCE, "the provenance")
-    if "contestant" in results:  # only where somebody else's solver was run
-        _require(results["contestant"], SOLVER, "contestant")
+    if "solver" in results:  # only where somebody else's solver was run
+        _require(results["solver"], SOLVER, "solver")
     if not results["cases"]:
         raise ResultFileError("it has no cases")
     for number, erratum in enumerate(results["errata"]):

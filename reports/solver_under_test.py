@@ -14,15 +14,15 @@ ELSEWHERE = ("--only", "--tier", "--jobs", "--json")
 
 def solver(results: Mapping[str, Any]) -> str | None:
     """Name of the solver under test: its MODULE:FUNCTION or command; None for the project's own cases."""
-    solver = results.get("contestant")
+    solver = results.get("solver")
     return None if solver is None else str(solver["name"])
 
 
 def rerun(command: str, case_id: str) -> str:
     """The command that runs one case with the solver, its abilities and limits as in ``command``.
 
-    >>> rerun("rough-friction verify --solver a:b --only 'x/*' --able load --json y", "contestant/pins")
-    'rough-friction verify --solver a:b --able load --only contestant/pins'
+    >>> rerun("rough-friction verify --solver a:b --only 'x/*' --able load --json y", "solver/pins")
+    'rough-friction verify --solver a:b --able load --only solver/pins'
     """
     try:
         words = iter(shlex.split(command)[1:])

@@ -18,7 +18,7 @@ from verification.cases.appendix_a import half_space
 EXAMPLES = {
     "hertz": (["32"], "converged: peak 165.79 MPa, -2.9e-03 of Hertz' 166.27"),
     "rough_friction": (["0.2"], "converged on 64 x 64\nmu = 0.1058 +- 0.0033\nA  = 0.1164 +- ... mm^2"),
-    "check_my_solver": (["contestant/pins"], "pass contestant/pins ... of 2.0e+00"),
+    "check_my_solver": (["solver/pins"], "pass solver/pins ... of 2.0e+00"),
     "which_way_up": (
         ["32"],
         "on the lower body it touches first at x = +0.20, y = +0.21 mm\n"

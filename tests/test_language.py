@@ -20,7 +20,6 @@ LANGUAGE = tomllib.loads((ROOT / "tests/language.toml").read_text(encoding="utf-
 PATTERNS, WORDS = LANGUAGE["pattern"], LANGUAGE["names"]
 FILES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
 
-VERDICT = "verdict in recorded results"
 SUMMITS = "summits in the sense of Nayak, and of Greenwood and Tripp"
 KEY = "key of recorded results"
 FAULT = "name of a fault in recorded results"
@@ -34,14 +33,12 @@ EXCEPTIONS: dict[tuple[str, str], str] = {
     ("verification/solver_suite/check.py", "left out"): FAULT,
     ("verification/exact/greenwood_tripp.py", "summit"): SUMMITS,
     ("verification/exact/greenwood_tripp.py", "summits"): SUMMITS,
-    ("verification/stress_tests/state.py", "honest failure"): VERDICT,
     ("verification/reproduction/fig6.py", "summit"): SUMMITS,
     ("verification/reproduction/fig6.py", "summits"): SUMMITS,
 }
 """Reasons, by file and matched text."""
 
 KEPT = {
-    "verification/contestants": "former name of verification.solver_suite, for one release",
     "obliqueness": "former name of Slopes.cosine_product, for one release",
     "reports/studies/extremes.py": "named after the committed result that it shows",
     "extreme_scene": "a state at an end of its axis",

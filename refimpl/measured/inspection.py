@@ -143,7 +143,7 @@ class Inspection:
         }
 
 
-def inspect(
+def inspect_surface(
     path: str | Path | MeasuredSurface, *, size: tuple[float, float] | None = None, **keys: Any
 ) -> Inspection:
     """Read a file of heights as a scene would, and return what it holds and its roughness parameters.

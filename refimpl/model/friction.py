@@ -16,7 +16,7 @@ class FrictionLaw(Protocol):
     """Interface of a law ``r(f)`` on elements in contact; what has its members may be a scene's friction.
 
     ``jump`` is ``r`` at vanishing pressure (Pa); ``slope`` is the part of ``dr/df`` that solvers may take
-    into their linear systems. The rest, ``r - slope f``, is the held traction. It is constant on the active
+    into their linear systems. The rest, ``r - slope f``, is the shear offset. It is constant on the active
     set if the law ``is_linear``; otherwise solvers update it together with the slopes of the surface.
     Pressures are arrays (Pa) of any shape, active sets masks of the same shape, tractions arrays of it (Pa).
     """
@@ -36,7 +36,7 @@ class FrictionLaw(Protocol):
     def traction(self, pressure: Array, active: Mask) -> Array:
         """Return r (Pa): the law on the active set, and ``slope f`` outside."""
 
-    def held_traction(self, pressure: Array, active: Mask) -> Array:
+    def shear_offset(self, pressure: Array, active: Mask) -> Array:
         """Return ``r - slope f`` (Pa): zero outside the active set."""
 
 
@@ -75,7 +75,7 @@ class Friction:
         """Return Eq. (8): ``tau`` on the active set plus ``beta f`` (Pa)."""
         return self.tau * active + self.beta * pressure
 
-    def held_traction(self, pressure: Array, active: Mask) -> Array:
+    def shear_offset(self, pressure: Array, active: Mask) -> Array:
         """Return ``tau`` on the active set, zero outside (Pa)."""
         return self.tau * active.astype(np.float64)
 
@@ -83,7 +83,7 @@ class Friction:
 def require_law(law: object) -> None:
     """Raise `InputError` unless this is a law with a jump and a slope that are not negative."""
     if not isinstance(law, FrictionLaw):
-        members = "jump, slope, is_linear, traction and held_traction"
+        members = "jump, slope, is_linear, traction and shear_offset"
         raise InputError("friction", law, f"a Friction, or a FrictionLaw of one's own: {members}")
     require_number("friction.jump", law.jump, "a finite shear strength in Pa, not negative", at_least=0)
     require_number("friction.slope", law.slope, "a finite number, not negative", at_least=0)

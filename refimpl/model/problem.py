@@ -184,7 +184,7 @@ class Problem:
         depth = K * (approach - self.gap) - displacement
         return np.where(pressure >= self.cap, np.maximum(depth, 0.0), 0.0)
 
-    def load_weights(self, slopes: Slopes, held_traction: Array) -> tuple[Array, float]:
+    def load_weights(self, slopes: Slopes, shear_offset: Array) -> tuple[Array, float]:
         """Return Eq. (2) as an affine map of the pressure: ``N = sum(weights f) dA - offset`` (N).
 
         With ``r = held + beta f``: weights ``(cos theta_x - beta sin theta_x) cos theta_y`` and offset
@@ -193,7 +193,7 @@ class Problem:
         if slopes.is_flat:
             return slopes.cosine_product, 0.0
         weights = (slopes.cos_x - self.friction.slope * slopes.sin_x) * slopes.cos_y
-        offset = float(np.sum(held_traction * slopes.sin_x * slopes.cos_y)) * self.grid.element_area
+        offset = float(np.sum(shear_offset * slopes.sin_x * slopes.cos_y)) * self.grid.element_area
         return weights, offset
 
     def nominal_load(self, normal_force: float) -> float:

@@ -222,7 +222,7 @@ class _Scheme:
         return inner(weights, self.pressure) * problem.grid.element_area - offset
 
     def _update(self, approach: float, active: ActiveSet) -> tuple[Array, Array]:
-        """Slopes; returned are all displacements but ``a f`` (m), and the held traction (Pa)."""
+        """Slopes; returned are all displacements but ``a f`` (m), and the shear offset (Pa)."""
         law, normal = self.problem.friction, self._apply(self.pressure)
         v = self.slopes.per_cosine_product(normal + self._shear) + self.problem.gap
         self._clearance = v - approach
@@ -230,7 +230,7 @@ class _Scheme:
         lower, upper = self.problem.displacements(self.operator, self.pressure, traction, self.slopes)
         self.slopes = self.problem.slopes(lower, upper)
         self._shear = lower + upper - normal
-        return self._shear, active.held_traction(law, self.pressure, self._last_clearance)
+        return self._shear, active.shear_offset(law, self.pressure, self._last_clearance)
 
     def _last_clearance(self) -> Array:
         return self._clearance

@@ -59,7 +59,7 @@ class ActiveSet(Protocol):
     def traction(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
         """Return r (Pa)."""
 
-    def held_traction(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
+    def shear_offset(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
         """Return ``r - slope f`` (Pa)."""
 
 
@@ -74,9 +74,9 @@ class FixedSet:
         """Return r (Pa)."""
         return law.traction(pressure, self.elements)
 
-    def held_traction(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
+    def shear_offset(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
         """Return ``r - slope f`` (Pa)."""
-        return law.held_traction(pressure, self.elements)
+        return law.shear_offset(pressure, self.elements)
 
 
 @dataclass(frozen=True)
@@ -94,13 +94,13 @@ class GradualSet:
 
     def traction(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
         """Return r (Pa)."""
-        return law.slope * pressure + self.held_traction(law, pressure, clearance)
+        return law.slope * pressure + self.shear_offset(law, pressure, clearance)
 
-    def held_traction(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
+    def shear_offset(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
         """Return ``r - slope f`` (Pa)."""
         share = np.clip(1 - clearance() / self.reach, 0.0, 1.0)
         share[pressure > 0] = 1.0
-        return share * law.held_traction(pressure, share > 0)
+        return share * law.shear_offset(pressure, share > 0)
 
 
 def first_set(problem: Problem) -> ActiveSet:

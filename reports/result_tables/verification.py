@@ -48,7 +48,7 @@ def _searches(documents: Mapping[str, Any]) -> Iterator[Row]:
     found = documents["extremes"]["counts"]
     yield (
         "extreme inputs",
-        f"{found['right']} right, {found['honest failure']} detected failures, "
+        f"{found['right']} right, {found['detected failure']} detected failures, "
         f"{found['wrong']} wrong, {found['crash']} crashes",
         link("extremes"),
     )

@@ -13,10 +13,10 @@ from matplotlib.patches import Patch
 from reports.drawing import COLOURS, INK, Data, Figure
 from reports.exhibit import Column, Document, Exhibit, Table, table
 
-VERDICTS = {"right": "right", "honest failure": "detected failure", "wrong": "wrong", "crash": "crash"}
+VERDICTS = {"right": "right", "detected failure": "detected failure", "wrong": "wrong", "crash": "crash"}
 """Recorded verdicts, and their names here."""
 DRAWN = ("load", "contact set", "material", "friction", "topography", "grid")
-NOT_RIGHT = {"honest failure": "#b0b0b0", "wrong": COLOURS[1], "crash": COLOURS[5]}
+NOT_RIGHT = {"detected failure": "#b0b0b0", "wrong": COLOURS[1], "crash": COLOURS[5]}
 """Colours of verdicts without digits."""
 
 BY_SERIES: dict[str, Column] = {
@@ -66,7 +66,7 @@ def sentence(document: Document) -> str:
     again = sum(row["oracle"] in SECOND_SOLVE for row in right)
     return (
         f"{len(rows)} extreme inputs: {counts['wrong']} wrong by more than the input leaves open, "
-        f"{counts['crash']} crashes, {counts['honest failure']} with a status that says that they failed, "
+        f"{counts['crash']} crashes, {counts['detected failure']} with a status that says that they failed, "
         f"{len(right) - len(few)} right to {FEW} digits and {len(few)} to fewer"
         f"{f' ({judges})' if few else ''}; "
         f"{again} of the right ones are judged by a second solve of this code"

@@ -159,7 +159,7 @@ COVERED = [
 ]
 STUDIES: dict[str, Any] = {
     "coverage_corrected": {"table": COVERED},
-    "extremes": {"counts": {"right": 0, "wrong": 1, "crash": 2, "honest failure": 3}, "states": []},
+    "extremes": {"counts": {"right": 0, "wrong": 1, "crash": 2, "detected failure": 3}, "states": []},
 }
 
 

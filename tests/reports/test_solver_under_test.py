@@ -16,23 +16,23 @@ from tests.reports.sample import case, results
 from tests.reports.test_generator import Page, summary_of
 from verification.cli import parser
 
-COMMAND = "rough-friction verify --exec './mine --fast' --able load --only 'contestant/*' --json out.json"
+COMMAND = "rough-friction verify --exec './mine --fast' --able load --only 'solver/*' --json out.json"
 
 
 def theirs(*cases: dict[str, Any], command: str = COMMAND) -> dict[str, Any]:
     made = results(
         *cases,
         tier="full",
-        contestant={"name": "./mine --fast", "abilities": None, "not_applicable": {}},
+        solver={"name": "./mine --fast", "abilities": None, "not_applicable": {}},
     )
     made["provenance"]["command"] = command
     return made
 
 
 RUN = theirs(
-    case("contestant/pins"),
-    case("contestant/hertz", "fail", value=1.2),
-    case("contestant/shear", "unavailable", note="the solver does not offer: coupling"),
+    case("solver/pins"),
+    case("solver/hertz", "fail", value=1.2),
+    case("solver/shear", "unavailable", note="the solver does not offer: coupling"),
 )
 OURS = {"quick": results(case("hertz/a"), case("hertz/b", tier="full"), case("hertz/c", "fail", value=1.3))}
 
@@ -54,8 +54,8 @@ def test_its_cases_are_counted_apart_from_the_projects_own() -> None:
     assert mine.counts == {"pass": 1, "fail": 1, "error": 0, "unavailable": 1}
     assert ours.counts == {"pass": 2, "fail": 1, "error": 0, "unavailable": 0}
     assert summary_of(render(RUN, OURS)).links == [
-        "#case-contestant.hertz",
-        "#case-contestant.shear",
+        "#case-solver.hertz",
+        "#case-solver.shear",
         "#case-hertz.c",
     ]
     assert re.findall(r"<b>(\d)</b> pass", render(RUN)) == ["1"]
@@ -63,7 +63,7 @@ def test_its_cases_are_counted_apart_from_the_projects_own() -> None:
 
 def test_every_case_says_how_it_is_run_again_with_the_solver_it_was_run_with() -> None:
     text = Page(render(RUN, OURS)).text
-    assert "rough-friction verify --exec './mine --fast' --able load --only contestant/pins" in text
+    assert "rough-friction verify --exec './mine --fast' --able load --only solver/pins" in text
     assert "rough-friction verify --only hertz/a" in text
     assert "rough-friction verify --tier full --only hertz/b" in text
 
@@ -72,17 +72,17 @@ def test_every_case_says_how_it_is_run_again_with_the_solver_it_was_run_with() -
     "command",
     [
         COMMAND,
-        "rough-friction verify --only=contestant/a --solver a:b --js=x.json --timeout 5 --largest=32",
-        "/usr/bin/rough-friction verify --tie full --solver=a:b --job 3 --on 'contestant/*' --precision 1e-6",
+        "rough-friction verify --only=solver/a --solver a:b --js=x.json --timeout 5 --largest=32",
+        "/usr/bin/rough-friction verify --tie full --solver=a:b --job 3 --on 'solver/*' --precision 1e-6",
     ],
 )
 def test_the_command_is_parsed_to_the_same_solver(command: str) -> None:
-    words = shlex.split(rerun(command, "contestant/pins"))
+    words = shlex.split(rerun(command, "solver/pins"))
     assert words[0] == "rough-friction"
     before, after = (parser().parse_args(w[1:]) for w in (shlex.split(command.replace("x.json", "-")), words))
     for name in ("solver", "exec", "able", "largest", "precision", "timeout"):
         assert getattr(after, name) == getattr(before, name)
-    assert after.only == ["contestant/pins"]
+    assert after.only == ["solver/pins"]
     assert after.json is None
 
 
@@ -94,5 +94,5 @@ def test_a_committed_run_of_another_solver_is_no_evidence_of_ours() -> None:
 
 @pytest.mark.parametrize("alien", [None, "mine", {}])
 def test_a_solver_without_a_name_is_refused(alien: object) -> None:
-    with pytest.raises(ResultFileError, match="contestant"):
-        check(results(case("a/1"), contestant=alien))
+    with pytest.raises(ResultFileError, match="solver"):
+        check(results(case("a/1"), solver=alien))

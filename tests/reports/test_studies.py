@@ -31,7 +31,7 @@ OTHERS = BARS | {"class": None, "number": None, "scenes": 7, "held_of_usable": 0
 OFFERS = [{"quantity": "mu", "error": 0.001, "M": None},
           {"quantity": "mu", "error": 0.02, "M": 48, "transforms of 256": 1.2345}]  # fmt: skip
 STATES = [("load", "fft", "right", d) for d in (12, 3, 7)] + [("load", "fft", "wrong", 5)]
-STATES += [("load", "dense", "honest failure", 1), ("scale", "fft", "crash", 1)]
+STATES += [("load", "dense", "detected failure", 1), ("scale", "fft", "crash", 1)]
 EXTREMES = Names(
     states=[
         {"axis": a, "series": f"s, {s}", "verdict": v, "digits": d, "oracle": "x"} for a, s, v, d in STATES
@@ -73,7 +73,7 @@ def entrant(name: str, *found: tuple[str, float | None]) -> dict[str, Any]:
     return Names(name=name, installed=True, counts=counts, results=rows)
 
 
-SUITE = [{"id": f"contestant/{slug}", "title": slug.title(), "metric": metric} for slug, metric in
+SUITE = [{"id": f"solver/{slug}", "title": slug.title(), "metric": metric} for slug, metric in
          (("peak", "relative"), ("order", "at_least"), ("shear", "relative"))]  # fmt: skip
 CODES = {
     "cases": SUITE,
@@ -186,7 +186,7 @@ def test_series_of_figures_and_codes_that_are_not_there() -> None:
 def test_results_of_few_digits_and_second_solves_are_reported_apart() -> None:
     judges = [("Hertz", 3.1), ("Hertz", 12.0), ("the scaling law", 17.0), ("the dense solver", 0.05)]
     states = [{"verdict": "right", "oracle": oracle, "digits": digits} for oracle, digits in judges]
-    said = sentence({"states": states, "counts": {"wrong": 0, "crash": 0, "honest failure": 0}})
+    said = sentence({"states": states, "counts": {"wrong": 0, "crash": 0, "detected failure": 0}})
     assert "2 right to 6 digits and 2 to fewer (1 judged by the dense solver, from 0.05" in said
     assert "1 judged by Hertz, from 3.1 digits); 2 of the right ones are judged by a second solve" in said
 

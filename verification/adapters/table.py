@@ -97,7 +97,7 @@ def measured() -> dict[str, object]:
 
 
 def _design(case: str) -> str | None:
-    """Return ``contestant/design-NAME`` of a problem of a covering design; None of other cases."""
+    """Return ``solver/design-NAME`` of a problem of a covering design; None of other cases."""
     head, _, number = case.rpartition("-")
     return head if "/design-" in case and number.isdigit() else None
 

@@ -50,7 +50,7 @@ OPTIONS: Options = {
 
 def run(options: argparse.Namespace) -> int:
     """Inspect the file."""
-    from refimpl import inspect
+    from refimpl import inspect_surface
 
     check_suffix("--plot", options.plot, PICTURES)
     check_outputs([Path(options.file)], plot=options.plot, json=options.json)
@@ -58,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
     keys = {name: value for name in names if (value := getattr(options, name)) is not None}
     with StatusLine() as line:
         line.show(f"{options.file}: reading")
-        found = inspect(options.file, size=options.size, **keys)
+        found = inspect_surface(options.file, size=options.size, **keys)
         document, text = found.document(), table(found)
         if options.fit:
             line.show(f"{options.file}: fitting")

@@ -101,7 +101,7 @@ def document(judged: Judged, solver: Mapping[str, str | None], stated: Mapping[s
         if not judged.of_convergence
         else 0,
         "interrupted": judged.ended is not None,
-        "contestant": {
+        "solver": {
             **solver,
             "abilities": dict(stated) or None,
             "not_applicable": {r.id: r.note for r in judged.results if r.status == "unavailable"},

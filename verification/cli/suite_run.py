@@ -107,7 +107,7 @@ def run(options: argparse.Namespace) -> int:
     document = suite_report.document(judged, identity_of(options), stated)
     emit(document, options.json, suite_report.text(readable(name), judged))
     if options.table is not None:
-        ours = suite_table.run_entry(document["contestant"], suite.VERSION, judged.results)
+        ours = suite_table.run_entry(document["solver"], suite.VERSION, judged.results)
         write_text(suite_table.text_of(options.table.suffix, [ours, *suite_table.published()]), options.table)
     if isinstance(judged.ended, Ended):  # as the signal would have, once what is judged is shown and written
         os.kill(os.getpid(), judged.ended.number)

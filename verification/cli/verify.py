@@ -23,7 +23,7 @@ EPILOG = """examples:
   rough-friction verify --self-test
   rough-friction verify --export reference-data
 """
-SELF_TEST = "contestants/*"
+SELF_TEST = "solver_suite/*"
 """The cases that run the suite for other solvers on our own, and on broken ones."""
 
 OPTIONS: Options = {

@@ -215,7 +215,7 @@ class Check:
     @property
     def id(self) -> str:
         """Id of its verification case."""
-        return f"contestant/{self.slug}"
+        return f"solver/{self.slug}"
 
     @property
     def description(self) -> str:

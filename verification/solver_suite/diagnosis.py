@@ -30,7 +30,7 @@ ITERATIONS = {
 }
 """By slug: iterations of constrained conjugate gradients to a tenth of 1e-8, with 2000 as their limit.
 
-Counted once, at commit 43108c8b, by its `verification.contestants.compact`; in the order of the rows. Large
+Counted once, at commit 43108c8b, by its `verification.solver_suite.compact`; in the order of the rows. Large
 grids and problems with a hardness are not counted.
 """
 

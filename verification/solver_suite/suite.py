@@ -14,7 +14,7 @@ from verification.solver_suite import checks
 from verification.solver_suite.check import Check
 from verification.solver_suite.protocol import SolverUnderTest
 
-VERSION = "1.2"
+VERSION = "1.3"
 """Version of the suite, in every result and in CITATION.cff: raised when a case is added, removed or judged
 otherwise. `identity` has a digest that shows when it should be."""
 
@@ -41,7 +41,7 @@ def identity() -> dict[str, str | int]:
 
 
 def select(globs: Iterable[str] = (), among: tuple[Check, ...] | None = None) -> tuple[Check, ...]:
-    """The checks whose id (``contestant/...``) matches a glob; all without any. ``!glob`` takes away.
+    """The checks whose id (``solver/...``) matches a glob; all without any. ``!glob`` takes away.
 
     ``among`` takes the place of the suite. Raises LookupError for a glob that matches none, and where all
     are taken away: an empty selection must not look like success.

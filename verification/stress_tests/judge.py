@@ -42,7 +42,7 @@ def caught(judge: Callable[P, Judged]) -> Callable[P, Judged]:
             # documented: the frozen problem has no solution, or no approach carries the load
             detected = refused or type(error) is ArithmeticError
             status = "InputError" if refused else "unjudged" if unjudged else type(error).__name__
-            verdict, oracle = (Verdict.HONEST, "refused") if detected else (Verdict.CRASH, "none")
+            verdict, oracle = (Verdict.DETECTED, "refused") if detected else (Verdict.CRASH, "none")
             return Judged(verdict, status, None, WRONG_FROM, oracle, str(error).partition("\n")[0])
 
     return judged
@@ -80,7 +80,7 @@ def verdict(
     status = solution.status.value
     if solution.status in GOOD:
         return number(error, limit, status, oracle, note, **data)
-    return Judged(Verdict.HONEST, status, error if np.isfinite(error) else None, limit, oracle, note, data)
+    return Judged(Verdict.DETECTED, status, error if np.isfinite(error) else None, limit, oracle, note, data)
 
 
 def change(solution: rf.Solution, other: rf.Solution) -> float:

@@ -15,7 +15,7 @@ class Verdict(StrEnum):
     """Verdict on a state. WRONG must never occur: a number with an error, reported as good."""
 
     RIGHT = "right"
-    HONEST = "honest failure"  # refused by InputError, or a status that says no
+    DETECTED = "detected failure"  # refused by InputError, or a status that says no
     WRONG = "wrong"
     CRASH = "crash"  # an exception that nobody foresaw: no wrong number, but no reason either
 

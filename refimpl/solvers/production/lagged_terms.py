@@ -2,7 +2,7 @@
 
 CG inverts ``a f``, and with it the coupling ``beta c f`` where that is weak. Cerruti's kernel is odd, so
 ``c`` is skew: it adds nothing to a curvature ``d.(a d)``, and one transform applies both kernels. What is
-left of shear is then the held traction of the friction law, which is constant on a given active set. Where
+left of shear is then the shear offset of the friction law, which is constant on a given active set. Where
 the coupling is strong, CG's directions lose their conjugacy; then all of shear lags, and its updates are
 mixed. So do facet tractions, whose shear is no multiple of the pressure.
 """
@@ -113,7 +113,7 @@ class LaggedTerms:
 
     @property
     def _held(self) -> Array:
-        return self.active.held_traction(self._problem.friction, self._cg.pressure, self.clearance)
+        return self.active.shear_offset(self._problem.friction, self._cg.pressure, self.clearance)
 
     def update(self) -> float:
         """Update all lagged terms from the present pressure; return the residual of the whole problem."""
@@ -243,7 +243,7 @@ class LaggedTerms:
         return product if applied in (0.0, total) else (total / applied) * product
 
     def _shear_of_held(self) -> Array | float:
-        """The shear product of the held traction (Pa m), of a linear law applied once for an active set."""
+        """The shear product of the shear offset (Pa m), of a linear law applied once for an active set."""
         law = self._problem.friction
         if law.is_linear and law.jump == 0:
             return 0.0

@@ -38,8 +38,8 @@ def test_the_traction_is_eq_8() -> None:
     np.testing.assert_array_equal(LAW.traction(PRESSURE, ACTIVE), [0.0, 6.0, 1.5])
 
 
-def test_the_held_traction_is_what_is_no_multiple_of_the_pressure() -> None:
-    held = LAW.held_traction(PRESSURE, ACTIVE)
+def test_the_shear_offset_is_what_is_no_multiple_of_the_pressure() -> None:
+    held = LAW.shear_offset(PRESSURE, ACTIVE)
     np.testing.assert_array_equal(held, [0.0, 5.0, 0.0])
     np.testing.assert_array_equal(LAW.traction(PRESSURE, ACTIVE), held + LAW.slope * PRESSURE)
     assert (LAW.jump, LAW.slope, LAW.is_linear) == (5.0, 0.5, True)

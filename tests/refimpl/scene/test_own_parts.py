@@ -49,7 +49,7 @@ class Limited:
         law = np.minimum(self.jump + self.slope * pressure, self.limit)
         return np.where(active, law, self.slope * pressure)
 
-    def held_traction(self, pressure: Array, active: Mask) -> Array:
+    def shear_offset(self, pressure: Array, active: Mask) -> Array:
         return self.traction(pressure, active) - self.slope * pressure
 
 

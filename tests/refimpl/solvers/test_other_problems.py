@@ -41,7 +41,7 @@ class LimitedShear:
         law = np.minimum(self.jump + self.slope * pressure, self.r_max)
         return np.where(active, law, self.slope * pressure)
 
-    def held_traction(self, pressure: Array, active: Mask) -> Array:
+    def shear_offset(self, pressure: Array, active: Mask) -> Array:
         """Return ``r - beta f`` (Pa)."""
         return self.traction(pressure, active) - self.slope * pressure
 

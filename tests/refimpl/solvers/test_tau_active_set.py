@@ -52,14 +52,14 @@ def none() -> Array:
 def test_a_fixed_set_carries_tau_whatever_the_state() -> None:
     law, pressure, on = rf.Friction(tau=2.0, beta=0.5), np.array([4.0, 0.0, 4.0]), mask("xx.")
     assert FixedSet(on).traction(law, pressure, none).tolist() == [4.0, 2.0, 2.0]
-    assert FixedSet(on).held_traction(law, pressure, none).tolist() == [2.0, 2.0, 0.0]
+    assert FixedSet(on).shear_offset(law, pressure, none).tolist() == [2.0, 2.0, 0.0]
 
 
 @given(clearance=st.floats(-2, 2), pressure=st.sampled_from([0.0, 1e-9, 1.0]))
 def test_shares_of_a_gradual_set_fall_with_the_clearance_outside_the_contact(
     clearance: float, pressure: float
 ) -> None:
-    held = GradualSet(0.5).held_traction(
+    held = GradualSet(0.5).shear_offset(
         rf.Friction(tau=2.0), np.array([pressure]), lambda: np.array([clearance])
     )
     share = 1.0 if pressure else min(max(1 - clearance / 0.5, 0.0), 1.0)

@@ -66,12 +66,12 @@ def test_a_sphere_cap(tmp_path: Path) -> None:
     x = (np.arange(n) - (n - 1) / 2) * edge
     np.save(tmp_path / "cap.npy", np.sqrt(radius**2 - x[:, None] ** 2 - x[None, :] ** 2))
     keys = {"unit": "m", "pixel_size": edge}
-    found = rf.inspect(tmp_path / "cap.npy", level="mean", **keys).parameters
+    found = rf.inspect_surface(tmp_path / "cap.npy", level="mean", **keys).parameters
     s = n * edge
     assert found["Sq"] == pytest.approx(s**2 / (math.sqrt(360) * radius), rel=2e-4)
     assert found["Sz"] == pytest.approx(s**2 / (4 * radius), rel=2e-2)  # of points, not up to the corners
     assert found["Sdq"] == pytest.approx(s / (math.sqrt(6) * radius), rel=1e-2)
-    sphere = rf.inspect(tmp_path / "cap.npy", level="sphere", **keys)
+    sphere = rf.inspect_surface(tmp_path / "cap.npy", level="sphere", **keys)
     assert sphere.radius == pytest.approx(radius, rel=1e-6)
     assert sphere.parameters["Sq"] < 1e-6 * found["Sq"]
 
@@ -98,7 +98,7 @@ def test_parameters_agree_with_surfalize(
     """Numbers of surfalize 0.19.2 on these maps, levelled by a plane; Sal and Str are interpolated."""
     rng = np.random.default_rng(2)
     np.save(tmp_path / "a.npy", _drawn((256, 256), (1e-6, 1e-6), _gaussian_psd(values), 1e-6, rng))
-    found = rf.inspect(tmp_path / "a.npy", unit="m", pixel_size=1e-6).parameters
+    found = rf.inspect_surface(tmp_path / "a.npy", unit="m", pixel_size=1e-6).parameters
     for name, value in stated.items():
         assert found[name] == pytest.approx(value, rel=1e-3 if name in ("Sal", "Str") else 1e-9), name
 
@@ -109,7 +109,7 @@ def test_parameters_agree_with_surfalize(
 @pytest.mark.parametrize("lay", [0.0, 0.5, 2.9])
 def test_a_lay_is_found(tmp_path: Path, lay: float) -> None:
     np.save(tmp_path / "a.npy", gaussian(WITH_LAY | {"lay": lay, "lx": 50e-6, "ly": 10e-6}, 1))
-    found = rf.inspect(tmp_path / "a.npy", unit="m", pixel_size=PIXEL).parameters
+    found = rf.inspect_surface(tmp_path / "a.npy", unit="m", pixel_size=PIXEL).parameters
     away = (math.radians(found["lay_deg"]) - lay + math.pi / 2) % math.pi - math.pi / 2
     assert abs(away) < 0.12
     assert found["Str"] == pytest.approx(0.2, abs=0.06)
@@ -124,10 +124,11 @@ def test_a_lay_of_grooves_and_of_the_transposed_map(tmp_path: Path, degrees: int
     z = np.sin(across / 3.0) + 0.6 * np.sin(across / 4.3 + 1.0) + 0.05 * rng.normal(size=(120, 120))
     for heights, lay in ((z, degrees), (z.T, 90 - degrees)):
         np.save(tmp_path / "a.npy", heights)
-        found = rf.inspect(tmp_path / "a.npy", unit="um", pixel_size=1e-6).parameters["lay_deg"]
+        found = rf.inspect_surface(tmp_path / "a.npy", unit="um", pixel_size=1e-6).parameters["lay_deg"]
         assert abs((found - lay + 90) % 180 - 90) < 2
     np.save(tmp_path / "a.npy", gaussian(seed=4))
-    assert math.isnan(rf.inspect(tmp_path / "a.npy", unit="m", pixel_size=PIXEL).parameters["lay_deg"])
+    isotropic = rf.inspect_surface(tmp_path / "a.npy", unit="m", pixel_size=PIXEL)
+    assert math.isnan(isotropic.parameters["lay_deg"])
 
 
 @pytest.mark.parametrize("holes", ["none", "few", "scattered", "one"])
@@ -135,14 +136,14 @@ def test_a_slope_of_the_spectrum_that_holes_decide_is_no_number(tmp_path: Path, 
     """A slope that is stated is within three deviations of that of the map without holes."""
     z, rng = gaussian(seed=6), np.random.default_rng(6)
     np.save(tmp_path / "a.npy", z)
-    whole = rf.inspect(tmp_path / "a.npy", unit="m", pixel_size=PIXEL)
+    whole = rf.inspect_surface(tmp_path / "a.npy", unit="m", pixel_size=PIXEL)
     if holes == "scattered":
         z[rng.random(z.shape) < 0.01] = np.nan
     elif holes != "none":
         side = 40 if holes == "one" else 1
         z[100 : 100 + side, 90 : 90 + side] = np.nan
     np.save(tmp_path / "a.npy", z)
-    found = rf.inspect(tmp_path / "a.npy", unit="m", pixel_size=PIXEL)
+    found = rf.inspect_surface(tmp_path / "a.npy", unit="m", pixel_size=PIXEL)
     if holes in ("none", "few"):
         away = abs(found.parameters["hurst"] - whole.parameters["hurst"])
         assert away <= 3 * found.deviations["hurst"]
@@ -168,7 +169,7 @@ def test_the_misfit_is_less_for_the_kind_that_the_map_is_of() -> None:
 
 def test_what_the_map_does_not_tell_is_no_number(tmp_path: Path) -> None:
     np.save(tmp_path / "ridge.npy", np.sin(np.arange(60) / 20)[:, None] * np.ones(50))
-    found = rf.inspect(tmp_path / "ridge.npy", unit="um", pixel_size=1e-6).parameters
+    found = rf.inspect_surface(tmp_path / "ridge.npy", unit="um", pixel_size=1e-6).parameters
     assert set(found) == set(PARAMETERS)
     assert math.isnan(found["Str"])
     assert math.isnan(found["le_along"])
@@ -180,7 +181,7 @@ def test_an_inspection_says_what_the_file_holds(tmp_path: Path) -> None:
     z = gaussian()
     z[0, 0] = np.nan
     np.save(tmp_path / "a.npy", z * 1e6)
-    found = rf.inspect(tmp_path / "a.npy", unit="um", pixel_size=PIXEL, size=(100e-6, 60e-6))
+    found = rf.inspect_surface(tmp_path / "a.npy", unit="um", pixel_size=PIXEL, size=(100e-6, 60e-6))
     document = found.document()
     assert document["points"] == [256, 200]
     assert document["missing"] == 1
@@ -188,7 +189,7 @@ def test_an_inspection_says_what_the_file_holds(tmp_path: Path) -> None:
     assert document["unit"] == "um"
     assert document["size"] == pytest.approx([256e-6, 300e-6])
     surface = rf.MeasuredSurface(tmp_path / "a.npy", unit="um", pixel_size=PIXEL, max_missing=0.1)
-    assert rf.inspect(surface).parameters["Sq"] == pytest.approx(np.nanstd(z), rel=0.05)
+    assert rf.inspect_surface(surface).parameters["Sq"] == pytest.approx(np.nanstd(z), rel=0.05)
 
 
 # --- fits ---

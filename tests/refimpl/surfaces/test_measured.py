@@ -15,7 +15,7 @@ from refimpl.grid import Grid
 from refimpl.measured import MeasuredSurface
 from refimpl.measured.areal_parameters import Spectrum
 from refimpl.measured.detrending import DEGREES, fit
-from refimpl.measured.inspection import inspect
+from refimpl.measured.inspection import inspect_surface
 from refimpl.measured.missing_points import MAX_ELIMINATED, fill
 from refimpl.measured.readers import Overrides, read
 from refimpl.surfaces import SurfaceWarning
@@ -88,7 +88,7 @@ def test_windows_that_a_map_cannot_fill_are_refused(
 
 def test_pixels_of_any_ratio_make_one_window_and_of_absurd_size_none(tmp_path: Path) -> None:
     np.save(tmp_path / "a.npy", np.arange(60.0).reshape(10, 6) ** 2)
-    assert inspect(tmp_path / "a.npy", unit="um", pixel_size=(1e-6, 1e12)).z.shape == (10, 6)
+    assert inspect_surface(tmp_path / "a.npy", unit="um", pixel_size=(1e-6, 1e12)).z.shape == (10, 6)
     with pytest.raises(InputError, match=r"pixel of a\.sur = 1e\+31: expected a positive length in m"):
         Overrides().resolve("a.sur", "um", (1e31, 1e-6))
 

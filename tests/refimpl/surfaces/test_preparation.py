@@ -182,7 +182,7 @@ def test_a_slope_of_a_wrong_unit_is_a_note(tmp_path: Path, unit: str, pixel: flo
     surface = MeasuredSurface(tmp_path / "a.npy", unit=unit, pixel_size=pixel)
     (note,) = (line for line in surface.notes(Grid.square(40 * pixel, 40)) if "rms slope" in line)
     assert "is unit right?" in note
-    assert any("rms slope" in line for line in rf.inspect(surface).document()["notes"])
+    assert any("rms slope" in line for line in rf.inspect_surface(surface).document()["notes"])
     right = MeasuredSurface(tmp_path / "a.npy", unit="um", pixel_size=1e-6)
     assert not any("rms slope" in line for line in right.notes(Grid.square(40e-6, 40)))
 

@@ -72,7 +72,7 @@ def test_a_run_that_passed_has_status_zero(folder: Path) -> None:
 
 def test_the_self_test_is_a_pattern_of_cases() -> None:
     command = "rough-friction verify --self-test --jobs 1 --json FILE"
-    assert patterns_of(command) == ("full", ("contestants/*",))
+    assert patterns_of(command) == ("full", ("solver_suite/*",))
 
 
 def test_every_committed_file_has_its_command() -> None:

@@ -133,16 +133,16 @@ def test_slippy_gives_what_our_solver_gives(periodic: bool) -> None:
 
 def test_designs_are_one_row_each_with_their_failures() -> None:
     def row(number: str, status: str, error: float | None) -> dict[str, Any]:
-        name = f"contestant/design-plain-{number}"
+        name = f"solver/design-plain-{number}"
         same = {"tolerance": 1.01, "seconds": 0.5, "residual": error, "note": "why"}
         return {"id": name, "status": status, "error": error, **same}
 
-    single = {"id": "contestant/pins", "status": "pass"}
+    single = {"id": "solver/pins", "status": "pass"}
     found = table.summarised(
         [single, row("01", "pass", 0.5), row("02", "fail", 7.0), row("03", "unavailable", None)]
     )
     assert found[0] == single
-    assert found[1]["id"] == "contestant/design-plain"
+    assert found[1]["id"] == "solver/design-plain"
     assert (found[1]["status"], found[1]["error"], found[1]["seconds"]) == ("fail", 7.0, 1.5)
     assert found[1]["note"] == "fail: 02"
     assert table.summarised([row("01", "pass", 0.5), row("02", "unavailable", None)])[0]["status"] == "pass"
@@ -192,7 +192,7 @@ def test_negative_control_tamaas_without_its_second_step_is_periodic() -> None:
     np.testing.assert_allclose(
         np.asarray(fallen_in.pressure), np.asarray(periodic.pressure), rtol=0, atol=171e6 * 1e-6
     )
-    assert fails(negative_controls.registered_only, "contestant/hertz-peak", "contestant/surroundings")
+    assert fails(negative_controls.registered_only, "solver/hertz-peak", "solver/surroundings")
 
 
 @needs(contactmechanics.solve)
@@ -203,7 +203,7 @@ def test_negative_control_contactmechanics_without_mean_stiffness_stops_at_once(
     assert fallen_in.converged is True
     assert np.ptp(pressure) < 1e-12 * pressure.max()
     assert fails(
-        negative_controls.no_mean_stiffness, "contestant/westergaard-pressure", "contestant/rough-plane"
+        negative_controls.no_mean_stiffness, "solver/westergaard-pressure", "solver/rough-plane"
     )
 
 
@@ -214,7 +214,7 @@ def fails(code: PublishedCode, *cases: str) -> bool:
 
 def test_table_has_every_entrant_and_recomputes_residuals(monkeypatch: pytest.MonkeyPatch) -> None:
     """Also those that are not installed, by name; residuals and seconds are of the cases that ran."""
-    few = suite.select(["contestant/hertz-peak", "contestant/sliding-residual"])
+    few = suite.select(["solver/hertz-peak", "solver/sliding-residual"])
     monkeypatch.setattr(table, "suite", lambda: few)
     entrants = cast(list[dict[str, Any]], table.measured()["entrants"])
     assert [entrant["name"] for entrant in entrants] == list(table.ENTRANTS)
@@ -226,7 +226,7 @@ def test_table_has_every_entrant_and_recomputes_residuals(monkeypatch: pytest.Mo
             assert entrant["counts"]["fail"] == entrant["counts"]["error"] == 0  # too large for it, or passed
             continue
         by_id = {row["id"]: row for row in entrant["results"]}
-        peak, sliding = by_id["contestant/hertz-peak"], by_id["contestant/sliding-residual"]
+        peak, sliding = by_id["solver/hertz-peak"], by_id["solver/sliding-residual"]
         assert peak["status"] != "error", peak["note"]
         assert peak["seconds"] > 0
         if entrant["name"] in ("Tamaas, registered only", "SlipPY, its default in free space"):

@@ -64,7 +64,7 @@ def rival(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_the_command_line_states_units_and_where_an_answer_is_off(rival: Path, capfd: Capture) -> None:
-    able = ["--able", "approach,aperiodic", "--only", "contestant/pins", "--only", "contestant/hertz-load"]
+    able = ["--able", "approach,aperiodic", "--only", "solver/pins", "--only", "solver/hertz-load"]
     assert main(["verify", "--solver", "rival_solver:twice", *able]) == 1
     printed = " ".join(capfd.readouterr().out.split())
     assert "1e+08 > 2 claims" in printed
@@ -76,13 +76,13 @@ def test_the_command_line_states_units_and_where_an_answer_is_off(rival: Path, c
 
 
 def test_the_command_line_runs_a_solver(rival: Path, capfd: Capture) -> None:
-    able = ["--able", "load,approach,aperiodic", "--timeout", "86400", "--only", "contestant/one-element"]
+    able = ["--able", "load,approach,aperiodic", "--timeout", "86400", "--only", "solver/one-element"]
     assert main(["verify", "--solver", "rival_solver:solve", *able, "--json", "-"]) == 0
     document = json.loads(capfd.readouterr().out)
-    assert document["contestant"]["name"] == "rival_solver:solve"
-    assert document["contestant"]["abilities"]["periodic"] is False
-    assert document["contestant"]["not_applicable"] == {}
-    assert document["contestant"]["unseen_faults"] is None  # some cases were chosen: so much was left out
+    assert document["solver"]["name"] == "rival_solver:solve"
+    assert document["solver"]["abilities"]["periodic"] is False
+    assert document["solver"]["not_applicable"] == {}
+    assert document["solver"]["unseen_faults"] is None  # some cases were chosen: so much was left out
     assert [c["status"] for c in document["cases"]] == ["pass"]
     assert {"value", "tolerance_reason", "claim", "seconds"} <= set(document["cases"][0])
 
@@ -115,17 +115,17 @@ def test_an_option_replaces_only_its_own_part_of_a_solvers_abilities(
 
 def test_abilities_of_a_function_outlast_an_option(rival: Path, capfd: Capture) -> None:
     (rival / "able_solver.py").write_text(ABLE)
-    only = ["--only", "contestant/one-element", "--only", "contestant/westergaard-load"]
+    only = ["--only", "solver/one-element", "--only", "solver/westergaard-load"]
     assert main(["verify", "--solver", "able_solver:solve", "--largest", "64", *only, "--json", "-"]) == 0
     document = json.loads(capfd.readouterr().out)
-    assert document["contestant"]["not_applicable"] == {
-        "contestant/westergaard-load": "the solver does not offer: periodic"
+    assert document["solver"]["not_applicable"] == {
+        "solver/westergaard-load": "the solver does not offer: periodic"
     }
-    assert document["contestant"]["abilities"] == {"largest": 64}
+    assert document["solver"]["abilities"] == {"largest": 64}
 
 
 def test_the_command_line_names_what_was_not_run(capfd: Capture) -> None:
-    only = ["--only", "contestant/one-element", "--only", "contestant/westergaard-load"]
+    only = ["--only", "solver/one-element", "--only", "solver/westergaard-load"]
     status = main(["verify", "--exec", "false", "--able", "aperiodic,approach", *only])
     printed = capfd.readouterr().out
     assert status == 1
@@ -134,14 +134,14 @@ def test_the_command_line_names_what_was_not_run(capfd: Capture) -> None:
     assert "0 pass, 0 fail, 1 error, 1 unavailable" in printed
     assert "exit status 1: nothing said" in printed
     assert (
-        main(["verify", "--exec", "true", "--able", "periodic,load", "--only", "contestant/one-element"]) == 1
+        main(["verify", "--exec", "true", "--able", "periodic,load", "--only", "solver/one-element"]) == 1
     )
 
 
 def test_a_name_that_is_no_utf_8_can_be_written(tmp_path: Path, capfd: Capture) -> None:
     command, written = "false " + os.fsdecode(b"caf\xe9"), tmp_path / "mine.json"
-    assert main(["verify", "--exec", command, "--only", "contestant/pins", "--json", str(written)]) == 1
-    assert json.loads(written.read_text())["contestant"]["name"] == "false caf?"
+    assert main(["verify", "--exec", command, "--only", "solver/pins", "--json", str(written)]) == 1
+    assert json.loads(written.read_text())["solver"]["name"] == "false caf?"
     assert "false caf?: 0 pass" in capfd.readouterr().out
 
 
@@ -149,7 +149,7 @@ def test_the_whole_suite_names_the_faults_that_it_did_not_look_for(capfd: Captur
     own_name = "verification.solver_suite.own:solve"
     able = ["--able", "aperiodic,load", "--largest", "16"]
     assert main(["verify", "--solver", own_name, *able, "--json", "-"]) == 0
-    unseen = json.loads(capfd.readouterr().out)["contestant"]["unseen_faults"]
+    unseen = json.loads(capfd.readouterr().out)["solver"]["unseen_faults"]
     assert {Fault.SIGN_OF_C, Fault.APPROACH_FORGOTTEN, Fault.PADDING_CAPPED} <= {*unseen}
     assert not {Fault.MODULUS_OFF, Fault.SPACING_KEPT, Fault.FAINT_PRESSURE} & {*unseen}
     assert main(["verify", "--solver", own_name, *able]) == 0
@@ -219,18 +219,18 @@ def test_bad_usage_is_refused_in_one_line(
 
 def test_the_suite_and_the_self_test_can_be_listed(capfd: Capture) -> None:
     assert main(["verify", "--solver", "not.imported:here", "--list"]) == 0
-    assert "contestant/trailing-shift" in capfd.readouterr().out
+    assert "solver/trailing-shift" in capfd.readouterr().out
     assert main(["verify", "--solver", "not.imported:here", "--only", "!*/design-*", "--list"]) == 0
-    assert capfd.readouterr().out.count("contestant/") == sum("/design-" not in c.id for c in suite())
+    assert capfd.readouterr().out.count("solver/") == sum("/design-" not in c.id for c in suite())
     assert main(["verify", "--self-test", "--list"]) == 0
     listed = capfd.readouterr().out.splitlines()
-    assert len([line for line in listed if "contestants/catches-" in line]) == len(FAULTY)
+    assert len([line for line in listed if "solver_suite/catches-" in line]) == len(FAULTY)
     assert own.solve.version.startswith("refimpl ")
 
 
 def test_thorough_adds_problems_of_other_seeds_after_the_suite(tmp_path: Path, capfd: Capture) -> None:
     words = ["verify", "--solver", "verification.solver_suite.own:solve"]
-    words += ["--only", "contestant/design-plain-2-0[12]", "--only", "contestant/pins"]
+    words += ["--only", "solver/design-plain-2-0[12]", "--only", "solver/pins"]
     assert main([*words, "--thorough", "--json", str(tmp_path / "found.json")]) == 0
     found = json.loads((tmp_path / "found.json").read_text())
     assert [case["id"].partition("/")[2] for case in found["cases"]] == [

@@ -82,7 +82,7 @@ def test_another_discretisation_passes_by_its_limit_and_fails_equality() -> None
     found = results(averaging, ("other-wave",))
     assert [r.status for r in found] == ["pass"], found[0].note
     assert exit_status(found) == 0
-    equal = suite.run(averaging, ["contestant/periodic-elimination"])
+    equal = suite.run(averaging, ["solver/periodic-elimination"])
     assert [r.status for r in equal] == ["fail"]
 
 
@@ -142,10 +142,10 @@ def test_a_field_weighted_by_hand() -> None:
 
 def test_the_command_line_judges_by_limits(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = ["verify", "--solver", "verification.solver_suite.own:solve", "--discretisation", "other"]
-    assert main([*words, "--only", "contestant/other-load", "--json", str(tmp_path / "a.json")]) == 0
+    assert main([*words, "--only", "solver/other-load", "--json", str(tmp_path / "a.json")]) == 0
     assert "over the exact load: 1.00" in capsys.readouterr().out
     document = json.loads((tmp_path / "a.json").read_text())
-    assert [case["id"] for case in document["cases"]] == ["contestant/other-load"]
-    assert document["contestant"]["low_order"] == []
-    assert main([*words, "--only", "contestant/pins"]) == 2
+    assert [case["id"] for case in document["cases"]] == ["solver/other-load"]
+    assert document["solver"]["low_order"] == []
+    assert main([*words, "--only", "solver/pins"]) == 2
     assert main(["verify", "--discretisation", "other"]) == 2

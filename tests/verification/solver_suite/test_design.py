@@ -65,7 +65,7 @@ def test_further_arrays_pose_other_problems_and_our_solver_solves_them() -> None
     assert not {*sizes} & {row["elements"] for row in rows()["memory"]}
 
 
-QUICK = ["contestant/design-tiny-*", "contestant/design-memory-0*", "contestant/design-capped-0*"]
+QUICK = ["solver/design-tiny-*", "solver/design-memory-0*", "solver/design-capped-0*"]
 
 
 @pytest.mark.parametrize("claim", [1e-6, 1e-8, 1e-10])
@@ -85,7 +85,7 @@ def test_a_memory_is_judged_by_all_problems_in_turn() -> None:
         moduli.append(problem.reduced_modulus)
         return np.asarray(own.solve(replace(problem, reduced_modulus=moduli[0])).pressure)
 
-    (check,) = select([f"contestant/design-memory-{number:02}"])
+    (check,) = select([f"solver/design-memory-{number:02}"])
     assert check.case(own.solve).run().status == "pass"
     assert check.case(Limited(with_the_first_modulus, own.solve.abilities)).run().status == "fail"
     assert len(moduli) == 3
@@ -97,7 +97,7 @@ def test_a_flat_periodic_gap_has_the_mean_pressure() -> None:
         for n, row in enumerate(rows()["tiny"], start=1)
         if row["borders"] == "periodic" and not posed(row, n, 1e-8).gap.any()
     )
-    (check,) = select([f"contestant/design-tiny-{number:02}"])
+    (check,) = select([f"solver/design-tiny-{number:02}"])
     assert check.case(own.solve).run().status == "pass"
 
     def uneven(problem: ContactProblem) -> Array:

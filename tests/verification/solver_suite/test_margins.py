@@ -20,7 +20,7 @@ def posed_by(name: str) -> list[tuple[ContactProblem, Array]]:
     solver, posed = watching(
         lambda p: np.asarray(own.solve(replace(p, tolerance=1e-2 * p.tolerance)).pressure)
     )
-    (result,) = run(solver, [f"contestant/{name}"])
+    (result,) = run(solver, [f"solver/{name}"])
     assert result.status == "pass"
     return posed
 
@@ -40,7 +40,7 @@ def test_an_honest_answer_at_its_claim_passes_with_its_mean_counted(name: str) -
 
     for precision in (1e-8, 1e-6):
         (result,) = run(
-            Limited(lax, replace(own.solve.abilities, precision=precision)), [f"contestant/{name}"]
+            Limited(lax, replace(own.solve.abilities, precision=precision)), [f"solver/{name}"]
         )
         assert result.error is not None
         assert 0 < result.error < 0.01  # of 2 claims: an error's energy is of second order

@@ -117,10 +117,10 @@ def halving() -> Limited:
 
 
 def test_numbers_come_back_from_another_process() -> None:
-    (found,) = run(halving, ["contestant/hertz-load"], timeout=60.0)
+    (found,) = run(halving, ["solver/hertz-load"], timeout=60.0)
     assert found.status == "fail"
     assert "approach" in found.note
-    assert run_here(own.solve, ["contestant/hertz-load"])[0].status == "pass"
+    assert run_here(own.solve, ["solver/hertz-load"])[0].status == "pass"
 
 
 @pytest.mark.parametrize(("share", "error"), [(1.0, None), (1.01, pytest.approx(1e-2 / 1e-8))])
@@ -129,7 +129,7 @@ def test_pressures_are_judged_before_the_numbers_beside_them(share: float, error
         answer = halved(problem)
         return replace(answer, pressure=share * np.asarray(answer.pressure))
 
-    (found,) = run_here(Limited(solver, own.solve.abilities), ["contestant/load-balance"])
+    (found,) = run_here(Limited(solver, own.solve.abilities), ["solver/load-balance"])
     assert (found.status, found.error) == ("fail", error)
     assert "m: its pressures give" in found.note
     assert found.note.startswith("approach" if error is None else "loads asked (N) [")

@@ -125,7 +125,7 @@ def slow_second(problem):
     open("first", "w").close()
     return own.solve(problem)
 '''
-CASES = ["contestant/one-element", "contestant/pins"]
+CASES = ["solver/one-element", "solver/pins"]
 OTHER = "the solver's process sent something else than an answer"
 
 
@@ -184,11 +184,11 @@ def test_a_solver_that_patches_the_judge_or_forks_is_judged_once_a_case(
 def test_a_process_in_a_session_of_its_own_is_ended_and_named(
     folder: Path, capfd: pytest.CaptureFixture[str], solver: str
 ) -> None:
-    only = ["--only", "contestant/one-element", "--json", "out.json"]
+    only = ["--only", "solver/one-element", "--json", "out.json"]
     assert main(["verify", "--solver", f"hostile:{solver}", *only]) == 0
     pid = int((folder / "pid").read_text())
     assert not running(pid)
-    (left,) = json.loads((folder / "out.json").read_text())["contestant"]["left_running"]
+    (left,) = json.loads((folder / "out.json").read_text())["solver"]["left_running"]
     assert f"(process {pid}): ended" in left
     assert "processes that the solver left behind:" in capfd.readouterr().out
 
@@ -219,13 +219,13 @@ def test_an_interrupted_run_shows_and_writes_what_is_judged_so_far(
     finally:
         child.kill()
     assert child.returncode == status
-    assert "pass  contestant/one-element" in out
+    assert "pass  solver/one-element" in out
     assert "interrupted: 1 cases were not judged" in out
     assert err == ""
     document = json.loads((folder / "out.json").read_text())
     assert document["interrupted"] is True
     assert [case["status"] for case in document["cases"]] == ["pass"]
-    assert document["contestant"]["not_judged"] == ["contestant/pins"]
+    assert document["solver"]["not_judged"] == ["solver/pins"]
 
 
 def test_a_frame_comes_back_and_half_of_one_is_late() -> None:
@@ -272,7 +272,7 @@ def test_a_run_that_is_ended_takes_the_solver_with_it(
     (tmp_path / "tmp").mkdir()
     (tmp_path / "sleeper.py").write_text(SLEEPS)
     monkeypatch.setenv("TMPDIR", str(tmp_path / "tmp"))
-    child = started(["verify", *solver, "--only", "contestant/one-element"], tmp_path)
+    child = started(["verify", *solver, "--only", "solver/one-element"], tmp_path)
     until(180, "the solver started", lambda: (tmp_path / "pid").exists() and (tmp_path / "pid").read_text())
     pid = int((tmp_path / "pid").read_text())
     try:

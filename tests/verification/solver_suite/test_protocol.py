@@ -174,7 +174,7 @@ def test_unsupported_is_unavailable_and_an_exception_is_an_error() -> None:
     def unwilling(problem: ContactProblem) -> Answer:
         raise Unsupported("only odd grids") if problem.M % 2 == 0 else RuntimeError("broke")
 
-    (even,) = run(unwilling, ["contestant/one-element"])
+    (even,) = run(unwilling, ["solver/one-element"])
     assert (even.status, even.note) == ("unavailable", "only odd grids")
     with pytest.raises(RuntimeError, match="broke"):
         ask(unwilling, ContactProblem(np.zeros((3, 3)), 1e-6, 1e9, load=1.0))
@@ -258,7 +258,7 @@ def test_an_answer_may_be_an_archive(tmp_path: Path) -> None:
     ],
 )
 def test_a_program_that_does_not_answer_is_an_error(script: str, said: str) -> None:
-    (result,) = run(Command(("sh", "-c", script), Abilities(), timeout=0.2), ["contestant/one-element"])
+    (result,) = run(Command(("sh", "-c", script), Abilities(), timeout=0.2), ["solver/one-element"])
     assert result.status == "error"
     assert said in result.note
 
@@ -267,7 +267,7 @@ def test_of_what_a_program_says_only_the_end_is_read() -> None:
     script = "yes 'iteration after iteration' | head -c 20000000; echo; echo out of memory; exit 3"
     tracemalloc.start()
     try:
-        (result,) = run(Command(("sh", "-c", script), Abilities(), timeout=30), ["contestant/one-element"])
+        (result,) = run(Command(("sh", "-c", script), Abilities(), timeout=30), ["solver/one-element"])
         _, peak = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
@@ -277,11 +277,11 @@ def test_of_what_a_program_says_only_the_end_is_read() -> None:
 
 def test_a_program_that_answers_wrongly_fails() -> None:
     wrong = Command(("sh", "-c", "cp $0/gap.csv $0/pressure.csv"), Abilities(), timeout=5.0)
-    (result,) = run(wrong, ["contestant/one-element"])
+    (result,) = run(wrong, ["solver/one-element"])
     assert (result.status, result.note) == ("fail", "load (N) 0.46875; exact 445553.0")
 
 
 def test_a_command_is_split_as_a_shell_does() -> None:
-    (missing,) = run(Command(("./not-there",), Abilities(), 1.0), ["contestant/one-element"])
+    (missing,) = run(Command(("./not-there",), Abilities(), 1.0), ["solver/one-element"])
     assert (missing.status, "cannot run ./not-there" in missing.note) == ("error", True)
     assert Command.of("sh 'a b' -q", Abilities(), 1.0).words == ("sh", "a b", "-q")

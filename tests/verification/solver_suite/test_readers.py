@@ -34,7 +34,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with all readers and an export, ``data``."""
     path = tmp_path_factory.mktemp("readers")
     only = ("design-oblong-0*", "pins", "hertz-load")
-    words = [word for name in only for word in ("--only", f"contestant/{name}")]
+    words = [word for name in only for word in ("--only", f"solver/{name}")]
     assert main(["verify", "--export", str(path / "data"), *words]) == 0
     for name, text in FILES.items():
         (path / name).write_text(text, encoding="utf-8")

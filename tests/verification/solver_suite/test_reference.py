@@ -33,7 +33,7 @@ from verification.solver_suite.reference.posed import _key, problems
 
 E = 2e9
 SMALL = ("pins", "out-of-reach*", "sheared-pins", "capped-pins*", "periodic-elimination")
-ONLY = [word for name in SMALL for word in ("--only", f"contestant/{name}")]
+ONLY = [word for name in SMALL for word in ("--only", f"solver/{name}")]
 
 
 def _lowest(heights: Array) -> Array:
@@ -122,7 +122,7 @@ def test_uniform_periodic_pressures_have_no_residual_and_their_bounds() -> None:
 
 
 def test_a_problem_is_posed_once_and_grids_are_small() -> None:
-    names = [named.name for named in problems(["contestant/wide-pins", "contestant/hertz-*"])]
+    names = [named.name for named in problems(["solver/wide-pins", "solver/hertz-*"])]
     assert len(names) == len(set(names))
     assert "hertz-load" in names
     assert not any(name.startswith("wide-pins") for name in names)  # 160 elements a side
@@ -238,19 +238,19 @@ def test_pressures_beyond_the_bounds_are_found_whatever_the_checksums(copy: Path
 
 def test_a_folder_that_holds_something_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "mine.txt").write_text("keep")
-    only = ["--only", "contestant/pins"]
+    only = ["--only", "solver/pins"]
     assert main(["verify", "--export", str(tmp_path), *only]) == 2
     assert main(["verify", "--export", str(tmp_path / "no" / "such"), *only]) == 2
     assert main(["verify", "--export", str(tmp_path / "x"), "--self-test"]) == 2
-    assert main(["verify", "--export", str(tmp_path / "x"), "--only", "contestant/no-such"]) == 2
-    assert main(["verify", "--export", str(tmp_path / "x"), "--only", "contestant/wide-pins"]) == 2
+    assert main(["verify", "--export", str(tmp_path / "x"), "--only", "solver/no-such"]) == 2
+    assert main(["verify", "--export", str(tmp_path / "x"), "--only", "solver/wide-pins"]) == 2
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
     assert "a new or an empty directory" in capsys.readouterr().err
 
 
 def test_an_interrupted_export_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(files.Export, "close", lambda self: (_ for _ in ()).throw(KeyboardInterrupt))
-    assert main(["verify", "--export", str(tmp_path / "x"), "--only", "contestant/pins"]) == 130
+    assert main(["verify", "--export", str(tmp_path / "x"), "--only", "solver/pins"]) == 130
     assert list(tmp_path.iterdir()) == []
 
 

@@ -1,6 +1,6 @@
 """The suite for anyone's solver: faulty ones fail where they should, honest ones and other programs pass.
 
-Our own solver's pass is the case `contestants/own-solver` of the quick tier, which runs with the tests.
+Our own solver's pass is the case `solver_suite/own-solver` of the quick tier, which runs with the tests.
 """
 
 from __future__ import annotations
@@ -43,14 +43,14 @@ def test_a_periodic_mean_that_is_off_is_an_error(name: str) -> None:
         pressure = np.array(own.solve(asked).pressure)
         return pressure + 1e-3 * pressure.mean() if asked.periodic else pressure
 
-    (result,) = run(Limited(lifted, own.solve.abilities), [f"contestant/{name}"])
+    (result,) = run(Limited(lifted, own.solve.abilities), [f"solver/{name}"])
     assert result.error == pytest.approx(1e-6 / 1e-8, rel=1e-3)
     assert result.status == "fail"
 
 
 def test_the_dense_reference_passes_what_is_small_enough() -> None:
     names = ["pins", "wide-pins", "sheared-pins*", "periodic-sheared-*", "hertz-peak", "sliding-residual"]
-    results = {r.id.partition("/")[2]: r for r in run(own.dense, [f"contestant/{name}" for name in names])}
+    results = {r.id.partition("/")[2]: r for r in run(own.dense, [f"solver/{name}" for name in names])}
     too_large = {name for name, r in results.items() if r.status != "pass"}
     assert len(results) == 8
     assert too_large == {"hertz-peak", "wide-pins"}
@@ -92,7 +92,7 @@ def test_a_program_in_c_passes_what_applies_to_it(tmp_path: Path) -> None:
     verdicts = {r.id: r.status for r in results}
     assert {r.id: r for r in results if r.status in ("fail", "error")} == {}
     assert sum(status == "pass" for status in verdicts.values()) >= 20
-    assert verdicts["contestant/westergaard-load"] == verdicts["contestant/sheared-pins"] == "unavailable"
+    assert verdicts["solver/westergaard-load"] == verdicts["solver/sheared-pins"] == "unavailable"
 
 
 def test_the_worst_of_several_answers_is_named() -> None:
@@ -134,7 +134,7 @@ def test_a_claim_missed_by_little_fails_what_counts_in_claims(
             exact = own.solve(replace(posed, tolerance=1e-13 if posed.coupling is None else 1e-12))
             return np.asarray(exact.pressure) * (1 + (claims * posed.tolerance) ** power)
 
-        found = run(Limited(too_high, own.solve.abilities), [f"contestant/{name}" for name in names])
+        found = run(Limited(too_high, own.solve.abilities), [f"solver/{name}" for name in names])
         return {result.status for result in found}
 
     assert statuses(kept) == {"pass"}
@@ -180,6 +180,6 @@ def test_a_load_that_is_missed_alone_is_seen(light: float) -> None:
         answer = own.solve(problem)
         return np.asarray(answer.pressure) * (1.0001 if missed else 1.0)
 
-    (result,) = run(Faulty(solver), ["contestant/load-balance"])
+    (result,) = run(Faulty(solver), ["solver/load-balance"])
     assert result.status == "fail"
     assert result.value == pytest.approx(1e4, rel=1e-3)

@@ -20,11 +20,11 @@ from verification.solver_suite.suite import identity as of_suite
 OWN = "verification.solver_suite.own:solve"
 ONLY = [
     "--only",
-    "contestant/one-element",
+    "solver/one-element",
     "--only",
-    "contestant/westergaard-load",
+    "solver/westergaard-load",
     "--only",
-    "contestant/pins",
+    "solver/pins",
 ]
 COUNTS = {"pass": 2, "fail": 1, "error": 0, "unavailable": 3}
 
@@ -75,7 +75,7 @@ def test_a_run_writes_its_table(tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert [(row["case"].partition("/")[2], row["status"]) for row in mine] == [
         ("one-element", "pass"), ("pins", "pass"), ("westergaard-load", "pass"),
     ]  # fmt: skip
-    assert {row["checksum"] for row in mine} == {document["contestant"]["checksum"]}
+    assert {row["checksum"] for row in mine} == {document["solver"]["checksum"]}
     assert {"Tamaas", "ContactMechanics", "ASPHER"} <= {row["code"] for row in rows}
     assert main([*words[:-1], str(tmp_path / "run.pdf")]) == 2
     assert main(["verify", "--table", str(table)]) == 2

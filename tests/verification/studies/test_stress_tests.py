@@ -194,8 +194,8 @@ def endless() -> Judged:
     [
         ("right", "value", lambda: number(1e-9, 1e-8, "value", "x")),
         ("wrong", "value", lambda: number(float("nan"), 1e-8, "value", "x")),
-        ("honest failure", "InputError", lambda: judge.caught(rf.Material)(-1.0, 0.3)),
-        ("honest failure", "ArithmeticError", lambda: raising(ArithmeticError("no state"))),
+        ("detected failure", "InputError", lambda: judge.caught(rf.Material)(-1.0, 0.3)),
+        ("detected failure", "ArithmeticError", lambda: raising(ArithmeticError("no state"))),
         ("crash", "ZeroDivisionError", lambda: raising(ZeroDivisionError("division by zero"))),
         ("crash", "OutOfTime", endless),
     ],
@@ -204,13 +204,13 @@ def endless() -> Judged:
 def test_verdicts(verdict: str, status: str, run: Callable[[], Judged]) -> None:
     row = study.run_state("a/b/c", Extreme("b", "c", 0.0, run, 0.2))
     assert (row["verdict"], row["status"]) == (verdict, status)
-    assert (row["digits"] is None) == (verdict in ("honest failure", "crash"))
+    assert (row["digits"] is None) == (verdict in ("detected failure", "crash"))
     assert counted([row]).value == (verdict in ("wrong", "crash"))
 
 
 def test_an_error_that_the_status_admits_is_a_detected_failure() -> None:
     failed = replace(rf.solve(BALL, 4), status=rf.Status.STAGNATED)
-    assert judge.verdict(failed, 1.0, "x").verdict is Verdict.HONEST
+    assert judge.verdict(failed, 1.0, "x").verdict is Verdict.DETECTED
 
 
 def test_digits_lost_see_a_textbook_kernel() -> None:

@@ -42,9 +42,9 @@ class SharesOfTau:
 
     def traction(self, pressure: Array, active: Mask) -> Array:
         """Return ``share tau + beta f`` (Pa)."""
-        return self.held_traction(pressure, active) + self.slope * pressure
+        return self.shear_offset(pressure, active) + self.slope * pressure
 
-    def held_traction(self, pressure: Array, active: Mask) -> Array:
+    def shear_offset(self, pressure: Array, active: Mask) -> Array:
         """Return ``share tau`` (Pa)."""
         return self.jump * self.share
 

@@ -23,7 +23,7 @@ def verdicts(fault: Fault) -> dict[str, str]:
     return {r.id.partition("/")[2]: r.status for r in run(FAULTY[fault](), NAMED)}
 
 
-@case("contestants/own-solver", metric="equal", tolerance=0.0, source=SOURCE)
+@case("solver_suite/own-solver", metric="equal", tolerance=0.0, source=SOURCE)
 def own_solver() -> Measured:
     """The project's own solver through the suite for other solvers.
 
@@ -38,7 +38,7 @@ def own_solver() -> Measured:
 
 @family(
     "fault",
-    {"contestants/catches-" + "-".join(fault.replace("%", "percent").split()): (fault,) for fault in FAULTY},
+    {"solver_suite/catches-" + "-".join(fault.replace("%", "percent").split()): (fault,) for fault in FAULTY},
     metric="equal", tolerance=0.0, tier="full", source=SOURCE,
 )  # fmt: skip
 def caught(fault: Fault) -> Measured:
@@ -57,7 +57,7 @@ def caught(fault: Fault) -> Measured:
     return Measured(len(missed), 0.0, unit="cases", data={"named in": naming, "also": others}, note=note)
 
 
-@case("contestants/each-case-earns-its-place", metric="equal", tolerance=0.0, tier="full", source=SOURCE)
+@case("solver_suite/each-case-earns-its-place", metric="equal", tolerance=0.0, tier="full", source=SOURCE)
 def each_case_earns_its_place() -> Measured:
     """Cases of the suite against faulty solvers.
 

@@ -48,7 +48,7 @@ def wedge_at(gamma: float, r: float) -> Judged:
     try:
         found = np.array(wedge.stresses(r, theta, gamma)).ravel()
     except InputError as refused:
-        return Judged(Verdict.HONEST, "InputError", None, WEDGE_LIMIT, "refused", str(refused))
+        return Judged(Verdict.DETECTED, "InputError", None, WEDGE_LIMIT, "refused", str(refused))
     if r in LIMIT_RADII:
         exact, oracle = _limits(gamma, theta, r), "Michell's radial field" if r > 1 else "hydrostatic tip"
     else:
@@ -71,7 +71,8 @@ def pressed(nu: float, *, formulation: str, jitter: float = 0.0) -> Judged:
     """Surface displacement of a flat body under a strip against the closed form."""
     direct = formulation == "direct"
     if direct and nu == 0.5:
-        return Judged(Verdict.HONEST, "excluded", None, FEM_LIMIT, "lambda is infinite", "use the mixed form")
+        remedy = "use the mixed form"
+        return Judged(Verdict.DETECTED, "excluded", None, FEM_LIMIT, "lambda is infinite", remedy)
     mesh = distorted(SETUP.mesh(1), jitter)
     body = PlaneStrain.on(mesh, bend(mesh, flat()), 3 if direct else 2)
     u = body.displacements(nu) if direct else mixed.displacements(body, nu)
