@@ -9,21 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Literal, get_args
 
 from refimpl.accuracy.discretisation_error import discretisation, estimates
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.iteration_error import Uncertainty, merged
-from refimpl.errors import InputError, require_number, require_one_of
-
-Quantity = Literal[
-    "friction_coefficient_corrected",
-    "friction_coefficient",
-    "contact_area",
-    "contact_area_corrected",
-    "max_pressure",
-]
-QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
+from refimpl.errors import InputError, require_number
 
 FIRST_GRIDS = (32, 64)  # elements along the longer side
 GRID_SIZES = (*(quarter * 2**k for k in range(4, 10) for quarter in (5, 6, 7, 8)), 4096)
@@ -37,11 +27,6 @@ _ITERATION_SHARE = 1e-3  # share of the accuracy that unfinished iterations may 
 def check_accuracy(accuracy: float) -> None:
     """Raise `InputError` unless the accuracy is relative."""
     require_number("accuracy", accuracy, "a relative accuracy between 0 and 1", above=0, below=1)
-
-
-def check_quantity(quantity: str) -> None:
-    """Raise `InputError` unless the quantity is one that an accuracy applies to."""
-    require_one_of("quantity", quantity, QUANTITIES)
 
 
 def tolerance_for(accuracy: float) -> float:

@@ -56,10 +56,10 @@ def half_space_error(scene: Scene, solution: Solution) -> HalfSpaceError:
 
     Costs two solves on the solution's grid. Raises `ArithmeticError` where one does not converge.
     """
-    problem = solution.problem
+    problem = solution.details.problem
     z_lower, z_upper = problem.heights
     first = solution.approach + problem.datum  # from the first contact of the scene as given
-    moved = z_lower - solution.surface_lower, solution.surface_upper - z_upper + first
+    moved = z_lower - solution.surfaces[0], solution.surfaces[1] - z_upper + first
     lower, upper = gap_changes(contact_of(problem, solution.pressure, solution.traction, moved))
     receded = replace(
         scene,
@@ -93,7 +93,7 @@ def _surface(heights: Array, solution: Solution) -> ArraySurface:
 
 
 def _solved(scene: Scene, solution: Solution, approach: float | None) -> Solution:
-    found = solved_again(scene, solution, plastic=solution.problem.terms.plastic, approach=approach)
+    found = solved_again(scene, solution, plastic=solution.details.problem.terms.plastic, approach=approach)
     if not found.converged:
         raise ArithmeticError(f"the solve with the surfaces' recession ended as {found.status.value}")
     return found
@@ -108,7 +108,7 @@ def advice(error: HalfSpaceError, solution: Solution) -> str:
         name: abs(getattr(solution, name))
         for name in ("friction_coefficient", "contact_area", "max_pressure")
     }
-    size["approach"] = abs(solution.approach + solution.problem.datum)
+    size["approach"] = abs(solution.approach + solution.details.problem.datum)
     size["normal_force"] = abs(solution.normal_force)
     stated = {name: error.stated(name) / value for name, value in size.items() if value}
     rest = {
@@ -118,7 +118,7 @@ def advice(error: HalfSpaceError, solution: Solution) -> str:
     }
     worst = max(stated, key=lambda name: stated[name])
     left = max(rest.values())
-    slope = math.degrees(math.atan(math.sqrt(steepness(solution.problem, solution.contact))))
+    slope = math.degrees(math.atan(math.sqrt(steepness(solution.details.problem, solution.contact))))
     if slope > JUDGED_TO:
         return f"slopes of {slope:.2g} degrees, beyond the {JUDGED_TO:g} judged: use finite elements"
     if stated[worst] <= ACCEPTED:

@@ -81,7 +81,7 @@ def surface_verdict(scene: Scene, grid: int | tuple[int, int]) -> SurfaceVerdict
     solution = solve(scene, grid)
     if not solution.converged:
         raise ArithmeticError(f"the solve ended as {solution.status.value}")
-    problem = solution.problem
+    problem = solution.details.problem
     error = half_space_error(scene, solution)
     local = local_error(problem)
     short = short_wave_share(problem)
@@ -97,7 +97,7 @@ def surface_verdict(scene: Scene, grid: int | tuple[int, int]) -> SurfaceVerdict
 
 
 def _evidence(solution: Solution, short: float) -> str:
-    problem = solution.problem
+    problem = solution.details.problem
     slope = math.degrees(math.atan(math.sqrt(steepness(problem, solution.contact))))
     if constant_along_an_axis(*problem.heights):
         judged = "56 plane contacts solved by finite elements, slopes of 1 to 20 degrees"

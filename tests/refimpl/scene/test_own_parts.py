@@ -94,7 +94,7 @@ def test_a_law_with_a_limit_is_solved_corrected_and_summarised() -> None:
     assert most * s.contact_area > s.friction_force > 0.3e6 * s.contact_area
     np.testing.assert_array_equal(s.contact, papers.contact)
     taken_off = s.friction_coefficient - s.friction_coefficient_corrected
-    assert taken_off == pytest.approx(papers.features.dmu_dA * s.features.excess, rel=1e-6)
+    assert taken_off == pytest.approx(papers.details.features.dmu_dA * s.details.features.excess, rel=1e-6)
     assert (
         json.loads(json.dumps(s.summary(), allow_nan=False))["friction_coefficient"] == s.friction_coefficient
     )

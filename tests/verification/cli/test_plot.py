@@ -14,6 +14,7 @@ from matplotlib.image import AxesImage
 
 import refimpl as rf
 from refimpl.grid import Array
+from tests.changed import changed
 from tests.verification.cli.commands import run
 from verification.cli import plot
 from verification.cli.plot import gap_histogram, pressure_histogram, profile
@@ -51,8 +52,8 @@ def marked(
     grid = rf.solve(rf.read_scene("hertz"), grid=8).grid
     grid = dataclasses.replace(grid, shape=shape, lengths=(lengths, lengths * shape[1] / shape[0]))
     none = np.zeros(shape, dtype=bool)
-    problem = dataclasses.replace(solution.problem, grid=grid)
-    return dataclasses.replace(
+    problem = dataclasses.replace(solution.details.problem, grid=grid)
+    return changed(
         solution, pressure=pressure, traction=0.1 * pressure, max_pressure=3e6, grid=grid, problem=problem,
         excluded=none, gap=np.where(pressure > 0, 0.0, 1e-6),
     )  # fmt: skip
@@ -78,7 +79,7 @@ def test_windows_of_contact_all_over_of_none_and_of_a_line() -> None:
     view = view_of(marked([(1, 1), (38, 38)]))
     assert view.whole
     assert (view.first, view.last) == ((0, 0), (40, 40))
-    empty = dataclasses.replace(marked([(1, 1)]), pressure=np.zeros((40, 40)), max_pressure=0.0)
+    empty = changed(marked([(1, 1)]), pressure=np.zeros((40, 40)), max_pressure=0.0)
     assert view_of(empty).whole
     line = view_of(marked([(i, 20) for i in range(5, 30)]))
     assert not line.is_slender

@@ -19,6 +19,7 @@ from PIL import Image
 
 import refimpl as rf
 from refimpl.solution.patches import Patch
+from tests.changed import changed
 from tests.verification.cli.commands import SCENE, answer, run, shown
 from verification.cli import arrays, solve_table
 from verification.cli.plot import hertz_of
@@ -58,7 +59,7 @@ def replaced(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Replace:
     solution = rf.solve(rf.read_scene("scene.toml"), grid=8)
 
     def replace(**fields: Any) -> rf.Solution:
-        made = dataclasses.replace(solution, **fields)
+        made = changed(solution, **fields)
         monkeypatch.setattr(rf, "solve", lambda *_, **__: made)
         return made
 
@@ -74,7 +75,7 @@ def test_numbers_bars_and_units_of_the_table() -> None:
         load=5.0,
         side=4e-3,
     )
-    solution = dataclasses.replace(rf.solve(scene, 12, plastic=True), **NUMBERS, uncertainty=BARS)
+    solution = changed(rf.solve(scene, 12, plastic=True), **NUMBERS, uncertainty=BARS)
     found = [line.split() for line in solve_table.table(solution, "scene").splitlines()]
     for row in (
         "friction coefficient mu 0.24 +- 0.02",
@@ -94,7 +95,7 @@ def test_numbers_bars_and_units_of_the_table() -> None:
 @pytest.mark.parametrize("status", list(rf.Status))
 def test_exit_status(status: rf.Status, replaced: Replace) -> None:
     """A certificate that holds is not enough: the accuracy may be missing."""
-    assert replaced(status=status).certified
+    assert replaced(status=status).details.certified
     solved = status in (rf.Status.CONVERGED, rf.Status.CYCLED)
     printed = shown("solve scene.toml", int(not solved))
     assert f"status: {status.name}" in printed
