@@ -10,7 +10,7 @@
 """
 
 from refimpl.driver.solve import solve
-from refimpl.errors import InputError
+from refimpl.errors import Error, InputError, NotConverged
 from refimpl.grid import Grid
 from refimpl.measured import Inspection, MeasuredSurface, inspect_surface
 from refimpl.model.friction import Friction, FrictionLaw
@@ -34,6 +34,7 @@ from refimpl.surfaces import (
 __all__ = [
     "ArraySurface",
     "Body",
+    "Error",
     "Flat",
     "Friction",
     "FrictionLaw",
@@ -43,6 +44,7 @@ __all__ = [
     "Inspection",
     "Material",
     "MeasuredSurface",
+    "NotConverged",
     "Scene",
     "SelfAffineRoughness",
     "Sensitivity",

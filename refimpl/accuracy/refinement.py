@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from refimpl.accuracy.discretisation_error import discretisation, estimates
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.iteration_error import Uncertainty, merged
-from refimpl.errors import InputError, require_number
+from refimpl.errors import InputError, NotConverged, require_number
 
 FIRST_GRIDS = (32, 64)  # elements along the longer side
 GRID_SIZES = (*(quarter * 2**k for k in range(4, 10) for quarter in (5, 6, 7, 8)), 4096)
@@ -38,7 +38,7 @@ def tolerance_for(accuracy: float) -> float:
     return min(1e-5, max(1e-8, _ITERATION_SHARE * accuracy))
 
 
-class Unfinished(ArithmeticError):
+class Unfinished(NotConverged):
     """A grid on which the solve does not converge."""
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD
 from refimpl.driver.solve import solve
+from refimpl.errors import NotConverged
 from refimpl.grid import Array
 from refimpl.scene.parameters import parameters, with_parameter
 from refimpl.scene.scene import Scene
@@ -87,7 +88,7 @@ class Forward:
     def respond(self, scene: Scene, theta: Array, tolerances: Mapping[str, float] | None = None) -> Response:
         """Return the response of a scene at parameters ``(tau, beta, ln p, ...)``.
 
-        Raises `InputError` as `refimpl.solve` does, `ArithmeticError` where the solve does not converge.
+        Raises `InputError` as `refimpl.solve` does, `NotConverged` where the solve does not converge.
         """
         if self._report is not None:
             self._report(f"solve {self.solves + 1}: {scene.load:.4g} N")
@@ -128,7 +129,7 @@ def _response(
     solution = solve(scene, grid)
     if not solution.converged or not solution.contact.any():
         share = 100 * float(solution.contact.mean())
-        raise ArithmeticError(
+        raise NotConverged(
             f"the solve at {scene.load:.4g} N ended as {solution.status.value} with {share:.3g} % of the "
             "domain in contact: check the units of load and friction"
         )

@@ -25,7 +25,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from refimpl.errors import InputError, require_number
+from refimpl.errors import InputError, NotConverged, require_number
 from refimpl.model.forces import facet_resultants
 from refimpl.scene.parameters import check_tolerances
 from refimpl.scene.scene import Scene
@@ -152,7 +152,7 @@ def _half_space(
     """
     try:
         error = half_space_error(scene, solution)
-    except ArithmeticError:
+    except NotConverged:
         return dict.fromkeys(NUMBERS, math.inf)
     stated = {number: error.stated(number.removesuffix("_corrected")) for number in NUMBERS}
     return {number: max(0.0, stated[number] - sources[number]["coefficients"]) for number in NUMBERS}

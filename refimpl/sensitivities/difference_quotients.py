@@ -16,7 +16,7 @@ import numpy as np
 from refimpl.accuracy.discretisation_error import AREA
 from refimpl.accuracy.scatter import area_scatter
 from refimpl.driver.solve import solve
-from refimpl.errors import InputError
+from refimpl.errors import InputError, NotConverged
 from refimpl.scene.parameters import with_parameter
 from refimpl.scene.scene import Scene
 from refimpl.solution.solution import Solution
@@ -33,7 +33,7 @@ def difference_quotients(
 ) -> tuple[dict[str, float], float]:
     """Return each number's derivative over a parameter by two solves, and how far apart their values are.
 
-    The solves are a step to either side, or to one where the other is not allowed. Raises `ArithmeticError`
+    The solves are a step to either side, or to one where the other is not allowed. Raises `NotConverged`
     where one of both solves does not converge, `InputError` where neither side is allowed.
     """
     step, plastic = _stride(scene, solution, name, value), solution.details.problem.terms.plastic
@@ -42,7 +42,7 @@ def difference_quotients(
     )
     for ended in (below, above):
         if not ended.converged:
-            raise ArithmeticError(f"a solve with {name} changed by {step:.2g} ended as {ended.status.value}")
+            raise NotConverged(f"a solve with {name} changed by {step:.2g} ended as {ended.status.value}")
     span = high - low
     ends = _numbers(above), _numbers(below)
     return {number: (ends[0][number] - ends[1][number]) / span for number in ends[0]}, span

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from refimpl.errors import NotConverged
 from refimpl.grid import Array
 from refimpl.half_space.boundary_perturbation import gap_changes
 from refimpl.half_space.model_form import FINITE_STRAIN, SECOND_ORDER, contact_of, steepness
@@ -54,7 +55,7 @@ class HalfSpaceError:
 def half_space_error(scene: Scene, solution: Solution) -> HalfSpaceError:
     """Estimate what the half-space costs approach, N, mu, A, p_max and Q of a solution.
 
-    Costs two solves on the solution's grid. Raises `ArithmeticError` where one does not converge.
+    Costs two solves on the solution's grid. Raises `NotConverged` where one does not converge.
     """
     problem = solution.details.problem
     z_lower, z_upper = problem.heights
@@ -95,7 +96,7 @@ def _surface(heights: Array, solution: Solution) -> ArraySurface:
 def _solved(scene: Scene, solution: Solution, approach: float | None) -> Solution:
     found = solved_again(scene, solution, plastic=solution.details.problem.terms.plastic, approach=approach)
     if not found.converged:
-        raise ArithmeticError(f"the solve with the surfaces' recession ended as {found.status.value}")
+        raise NotConverged(f"the solve with the surfaces' recession ended as {found.status.value}")
     return found
 
 

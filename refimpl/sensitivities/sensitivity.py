@@ -28,7 +28,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from refimpl.errors import InputError, require_one_of
+from refimpl.errors import Error, InputError, require_one_of
 from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Terms
 from refimpl.scene.parameters import differentiable_parameters, parameters
@@ -82,13 +82,13 @@ def sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = 
     ``solution`` is the scene's own, under its load. Costs one GMRES solve a parameter, two solves on the
     solution's grid for the load and for each number of a surface, and as much on half the elements a side.
     ``names`` restricts the parameters to these and the load. Raises `InputError` for a solution that is not
-    in contact, not certified or another scene's, `ArithmeticError` where a linear or full solve does not
+    in contact, not certified or another scene's, `NotConverged` where a linear or full solve does not
     converge.
     """
     _check(scene, solution)
     found, coarse = grid_sensitivity(scene, solution, names), None
     half = [max(1, n // 2) for n in solution.grid.shape]
-    with suppress(InputError, ArithmeticError):
+    with suppress(Error):
         again = solved_again(
             scene, solution, plastic=solution.details.problem.terms.plastic, grid=(half[0], half[1])
         )

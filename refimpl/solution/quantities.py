@@ -82,7 +82,7 @@ class Quantity:
     unit : SI
     source : its value; None for that of this name in `Evidence.numbers`
     rule : its error bar, in the same unit; None for a number without one
-    tables : which tables have a row of it: of Python's "prompt", of the "command" line
+    tables : which have a row of it: that of Python's "prompt", of the "command" line, of a "picture"
     target : whether ``accuracy=`` may be about it
     """
 
@@ -108,22 +108,25 @@ class Quantity:
         return found[self.name] if self.source is None else self.source(solution)
 
 
+_EVERYWHERE = "prompt", "command", "picture"
+
+
 class Numbers:
     """The numbers of a `Solution`, in the order of its tables, with their error bars."""
 
     details: Details
 
     friction_coefficient_corrected = Quantity(
-        "friction coefficient mu", "mu", "1", target=True,
+        "friction coefficient mu", "mu", "1", tables=_EVERYWHERE, target=True,
         source=lambda s: s.details.features.numbers["friction_coefficient_corrected"],
     )  # fmt: skip
     friction_coefficient = Quantity("mu, summed over elements", "mu", "1", target=True)
-    contact_area = Quantity("contact area A", "A", "m^2", target=True)
+    contact_area = Quantity("contact area A", "A", "m^2", tables=_EVERYWHERE, target=True)
     contact_area_corrected = Quantity(
         "A, perimeter-corrected", "A", "m^2", tables=("command",), target=True
     )  # fmt: skip
     contact_area_share = Quantity(
-        "A/A0", "A/A0", "1", tables=("prompt",), rule=_area_share_error,
+        "A/A0", "A/A0", "1", tables=("prompt", "picture"), rule=_area_share_error,
         source=lambda s: s.contact_area / s.details.grid.nominal_area,
     )  # fmt: skip
     plastic_area = Quantity("plastic area", "A_p", "m^2")
@@ -131,7 +134,7 @@ class Numbers:
         "plastic share of A", "A_p/A", "1", tables=(), rule=_plastic_share_error,
         source=lambda s: s.plastic_area / s.contact_area if s.contact_area else 0.0,
     )  # fmt: skip
-    max_pressure = Quantity("maximum pressure p_max", "p_max", "Pa", target=True)
+    max_pressure = Quantity("maximum pressure p_max", "p_max", "Pa", tables=_EVERYWHERE, target=True)
     mean_pressure = Quantity(
         "mean contact pressure", "p_mean", "Pa", tables=("prompt",), rule=_mean_pressure_error,
         source=lambda s: _mean(s.details.state.pressure),
@@ -140,8 +143,8 @@ class Numbers:
         "mean gap", "", "m", tables=("prompt",), rule=_mean_gap_error,
         source=lambda s: float(s.details.state.gap.mean()),
     )  # fmt: skip
-    approach = Quantity("approach", "delta", "m")
-    normal_force = Quantity("normal force N", "N", "N")
+    approach = Quantity("approach", "delta", "m", tables=_EVERYWHERE)
+    normal_force = Quantity("normal force N", "N", "N", tables=_EVERYWHERE)
     friction_force_corrected = Quantity(
         "friction force F", "F", "N",
         source=lambda s: s.details.features.numbers["friction_force_corrected"],

@@ -32,6 +32,7 @@ LEFT, RIGHT = 0.6, 4.2  # inches, left edges of both columns
 MAP, LOWEST_MAP, GRAPH = 2.35, 1.0, 1.05  # inches: width of all panels, least height of a map, of a graph
 KEY = 2.15  # inches, least height of the numbers and the legend
 _BINS = 40  # bins of a histogram
+_SYMBOLS = {"mu": "μ", "p_max": "$p_{max}$", "delta": "approach δ"}
 _GREY = "0.45"
 BELOW, ABOVE = 0.42, 0.25  # inches, for an axis with its label, and for a title
 
@@ -98,11 +99,10 @@ def numbers_of(solution: Solution) -> list[str]:
     """Return the lines of numbers, each with the digits that its error bar leaves."""
     from refimpl.solution.quantities import QUANTITIES
 
-    rows = "friction_coefficient_corrected", "contact_area", "max_pressure", "approach", "normal_force"
+    rows = ((name, quantity.symbol) for name, quantity in QUANTITIES.items() if "picture" in quantity.tables)
     turned = math.degrees(solution.details.sliding_direction)
     return [
-        *(f"{QUANTITIES[name].symbol} = {_with_bar(solution, name)}" for name in rows),
-        f"A/A0 = {100 * solution.contact_area_share:.3g} %",
+        *(f"{_SYMBOLS.get(symbol, symbol)} = {_with_bar(solution, name)}" for name, symbol in rows),
         f"sliding at {turned:.4g}° from x",
         f"{solution.status.value}, {solution.grid.shape[0]} × {solution.grid.shape[1]} elements",
     ]

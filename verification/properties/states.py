@@ -46,7 +46,7 @@ def compliances(scene: rf.Scene) -> tuple[float, float]:
 
 def slope_along_and_across(sample: Sample, solution: rf.Solution) -> tuple[Array, Array]:
     """Tangents of theta_x and theta_y of the mean of the returned surfaces, by differences written out."""
-    z = sum(solution.surfaces) / 2
+    z = np.add(*solution.surfaces) / 2
     (n, m), (dx, dy) = sample.shape, sample.grid.spacings
     d = np.zeros((2, n, m))
     for i, j in np.ndindex(n, m):

@@ -69,7 +69,7 @@ def test_periodic_planes_too_far_apart(method: str) -> None:
 
 def test_slope_angles_are_of_the_returned_surface() -> None:
     s = rf.solve(replace(SMOOTH, sliding_direction=0.7), 24)
-    dx, dy = np.gradient(sum(s.surfaces) / 2, *s.grid.spacings)
+    dx, dy = np.gradient(np.add(*s.surfaces) / 2, *s.grid.spacings)
     np.testing.assert_allclose(np.tan(s.slopes.theta_x), math.cos(0.7) * dx + math.sin(0.7) * dy, atol=1e-8)
     np.testing.assert_allclose(np.tan(s.slopes.theta_y), math.cos(0.7) * dy - math.sin(0.7) * dx, atol=1e-8)
 

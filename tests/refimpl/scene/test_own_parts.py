@@ -68,16 +68,6 @@ def test_heights_of_another_shape_or_kind_are_refused(z: object, monkeypatch: py
         scene().heights(scene().grid((3, 2)))
 
 
-def test_the_former_name_works_for_one_release() -> None:
-    with pytest.warns(DeprecationWarning, match="Old: _sample is now heights_on"):
-
-        class Old(rf.Surface):
-            def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
-                return grid.zeros + offset[0]
-
-    assert Old().heights(Grid((2, 3), SIZE), (5.0, 0.0)).tolist() == [[5.0] * 3] * 2  # type: ignore[abstract]  # old
-
-
 @pytest.mark.parametrize("part", ["surface", "law"])
 def test_a_scene_file_has_neither(part: str) -> None:
     own = scene(Limited()) if part == "law" else scene()

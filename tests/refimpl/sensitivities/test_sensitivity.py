@@ -124,13 +124,6 @@ def test_stresses_scale_together(adhesive: Sensitivity) -> None:
         assert sum(adhesive.relative(number, name) for name in stresses) == pytest.approx(power, abs=2e-4)
 
 
-def test_former_names_are_taken_for_the_corrected_numbers(adhesive: Sensitivity) -> None:
-    for name in NUMBERS[:2]:
-        with pytest.warns(DeprecationWarning, match=name):
-            found = adhesive.relative(name.removesuffix("_corrected"), "load")
-        assert found == adhesive.relative(name, "load")
-
-
 def test_the_area_agrees_with_wide_differences_within_its_scatter(adhesive: Sensitivity) -> None:
     scene = sliding(tau=5e5)
     for name in ("lower.material.E", "lower.surface[0].rms"):

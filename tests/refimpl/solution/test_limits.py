@@ -256,7 +256,7 @@ def test_both_bodies_deform_into_themselves_and_meet() -> None:
 def test_where_slopes_are_excluded_they_are_those_of_the_deformed_surface() -> None:
     """The mean of both surfaces of the solution, by NumPy's gradient, on its contact."""
     s = rf.solve(STEEP_ON_SOFT, 48, oblique=False)
-    gradient = np.gradient(0.5 * sum(s.surfaces), 4e-3 / 48)
+    gradient = np.gradient(0.5 * np.add(*s.surfaces), 4e-3 / 48)
     steepest = math.degrees(math.atan(float(np.hypot(*gradient)[s.contact].max())))
     text = str(warned(s, Limit.MAX_SLOPE))
     assert float(re.findall(r"slope ([0-9.]+) degrees", text)[0]) == pytest.approx(steepest, rel=0.01)

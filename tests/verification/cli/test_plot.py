@@ -162,7 +162,7 @@ def test_the_legend_explains_what_is_there() -> None:
     assert not any("adhesive" in text or "plastic" in text for text in texts(plain))
     excluded = np.zeros((40, 40), dtype=bool)
     excluded[25, 14] = True
-    assert "shear map: no adhesive shear, r = β p" in texts(dataclasses.replace(plain, excluded=excluded))
+    assert "shear map: no adhesive shear, r = β p" in texts(changed(plain, excluded=excluded))
     soft = rf.Material(E=3e9, nu=0.38, hardness=1e6)
     scene = rf.Scene(
         rf.Body(STEEL, rf.Sphere(radius=0.05)), rf.Body(soft, rf.Flat()), rf.Friction(), load=0.3, side=1e-3

@@ -29,7 +29,7 @@ def solved(name: str, M: int) -> rf.Solution:
 
 def normal_force(solution: rf.Solution) -> float:
     """Eq. (2) with trigonometric functions of angles measured on the returned surfaces, exactly summed."""
-    common = sum(solution.surfaces) / 2
+    common = np.add(*solution.surfaces) / 2
     border = 1 if solution.grid.periodic else 0
     wide, inner = np.pad(common, border, mode="wrap"), slice(border, len(common) + border)
     along_i, along_j = (
