@@ -81,12 +81,12 @@ def verdict_on(solution: Record, name: str) -> str:
 
 
 def rows(solution: Record, table: str) -> list[tuple[str, list[str], str]]:
-    """Return name, number and unit of each number that a table lists; the plastic area only where there is
-    one."""
+    """Return name, number and unit of each number that a table lists; what is plastic only where
+    anything is."""
     return [
         (quantity.label, *number_and_unit(solution, name))
         for name, quantity in QUANTITIES.items()
-        if table in quantity.tables and (name != "plastic_area" or solution.plastic_area)
+        if table in quantity.tables and (solution.plastic_area or not name.startswith("plastic"))
     ]
 
 

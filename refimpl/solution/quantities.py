@@ -131,7 +131,7 @@ class Numbers:
     )  # fmt: skip
     plastic_area = Quantity("plastic area", "A_p", "m^2")
     plastic_share = Quantity(
-        "plastic share of A", "A_p/A", "1", tables=(), rule=_plastic_share_error,
+        "plastic share of A", "A_p/A", "1", tables=("command",), rule=_plastic_share_error,
         source=lambda s: s.plastic_area / s.contact_area if s.contact_area else 0.0,
     )  # fmt: skip
     max_pressure = Quantity("maximum pressure p_max", "p_max", "Pa", tables=_EVERYWHERE, target=True)

@@ -76,9 +76,8 @@ def not_usable(solution: Solution) -> list[str]:
     from refimpl.solution.quantities import QUANTITIES
 
     shown = [name for name, quantity in QUANTITIES.items() if "command" in quantity.tables]
-    if not solution.plan.includes("plastic"):
-        shown.remove("plastic_area")
-    return [name for name in shown if verdict_on(solution, name)]
+    elastic = not solution.plan.includes("plastic")
+    return [n for n in shown if not (elastic and n.startswith("plastic")) and verdict_on(solution, n)]
 
 
 def _change(effect: Mapping[str, float]) -> str:

@@ -189,7 +189,7 @@ def test_the_half_space_counts_beyond_what_coefficients_count(
     assert found == pytest.approx([0.02, 0.0, 6.97, 0.0])
 
     def fails(*_: object) -> None:
-        raise ArithmeticError
+        raise rf.NotConverged
 
     monkeypatch.setattr(module, "half_space_error", fails)
     assert {part.sources["half-space"] for part in budget(BALL, given).numbers.values()} == {math.inf}

@@ -55,7 +55,7 @@ def marked(
     problem = dataclasses.replace(solution.details.problem, grid=grid)
     return changed(
         solution, pressure=pressure, traction=0.1 * pressure, max_pressure=3e6, grid=grid, problem=problem,
-        excluded=none, gap=np.where(pressure > 0, 0.0, 1e-6),
+        excluded=none, plastic=none, gap=np.where(pressure > 0, 0.0, 1e-6),
     )  # fmt: skip
 
 
@@ -178,7 +178,7 @@ def test_numbers_have_their_error_bars_and_units_at_scale() -> None:
     lines = plot.numbers_of(solved(32))
     assert lines[0].startswith("μ = 0.1")
     assert "±" in lines[0]
-    assert lines[2].endswith("MPa")
+    assert lines[3].endswith("MPa")
     assert "sliding at 0° from x" in lines
     assert lines[-1] == "converged, 32 × 32 elements"
 

@@ -96,7 +96,8 @@ def test_further_outcomes_of_an_oblong_row() -> None:
     warned = [ModelWarning(Limit(x), 1, 2, "") for x in ("border", "half-space", "border")]
     s = changed(rf.solve(scene, (12, 6)), contact_area=5e-7, plastic_area=1e-7, warnings=tuple(warned))
     p = np.arange(72.0).reshape(12, 6)
-    row = outcome(changed(s, pressure=p, gap=p + 72), scene)
+    found = replace(s.details.state, pressure=p, v=p + 72, approach=0.0)
+    row = outcome(changed(s, state=found), scene)
     assert row["plasticity_index"] == pytest.approx(0.00125**0.5 / 0.91)
     assert (row["plastic_area"], row["plastic_share"], row["contact_area_share"]) == (1e-7, 0.2, 0.25)
     assert (row["mean_pressure"], row["mean_gap"], row["elements_x"], row["elements_y"]) == (36, 107.5, 12, 6)
