@@ -31,6 +31,8 @@ from refimpl.surfaces import (
     SurfaceWarning,
 )
 
+__version__ = "0.1.0"  # the one place that states it
+
 __all__ = [
     "ArraySurface",
     "Body",
