@@ -31,13 +31,11 @@ lint: $(READY)
 	$(BIN)/mypy
 
 # The tests that `make test` leaves out. Then hypothesis examples of the solver invariants: other ones every day,
-# resumed when interrupted. Then the table of single faults in the production solver: its comparison with
-# refimpl/plain.py must notice each.
+# resumed when interrupted.
 nightly: $(READY)
 	@mkdir -p $(OUT)
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m nightly
 	$(BIN)/python -m verification.properties --examples 10000 --seed $$(date +%Y%m%d) --json $(OUT)/hypothesis.json
-	$(BIN)/python -m tests.faults.run --json $(OUT)/faults.json
 
 # Small faults that the tests must notice, N of them drawn at random, in a copy of the committed tree.
 N := 50
