@@ -7,7 +7,7 @@ OUT := out
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: report results test lint setup clean nightly mutation site
+.PHONY: report results test lint setup clean nightly mutation site licences
 
 report: $(READY)
 	@mkdir -p $(OUT)
@@ -58,6 +58,11 @@ site: $(READY)
 	$(BIN)/rough-friction report --results reports/results/quick.json.gz --output $(OUT)/pages
 	$(BIN)/python .ci/pages.py
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build
+
+# Every installed package with its version and licence.
+licences: $(READY)
+	$(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt pip-licenses
+	$(BIN)/pip-licenses --from=mixed --order=license
 
 setup: $(READY)
 
