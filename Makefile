@@ -16,12 +16,12 @@ report: $(READY)
 	$(BIN)/rough-friction report --results $(OUT)/results.json --output $(OUT)/report; \
 	exit $$status
 
-# The committed results: all cases in one run, cut into their files, and the commands of the files that are not cases.
+# The committed results of cases: the command of each file, as its row in reports/results/README.md states it. The
+# commands of the other files, which are no cases, stand there too.
 results: $(READY)
-	@mkdir -p $(OUT)
-	@rm -f $(OUT)/full.json; status=0; \
-	$(BIN)/rough-friction verify --tier full --jobs 1 --json $(OUT)/full.json || status=$$?; \
-	$(BIN)/python -m verification.cli.results $(OUT)/full.json && exit $$status
+	sed -n 's/^| `\([a-z_0-9]*\).json` | `\(rough-friction verify [^`]*\)FILE`.*/\2reports\/results\/\1.json.gz/p' \
+		reports/results/README.md | PATH="$(CURDIR)/$(BIN):$$PATH" xargs -d '\n' -P 2 -I {} sh -c '{}'
+	$(BIN)/python -m reports.results_page
 
 test: lint
 	$(BIN)/python -m pytest -n 2 --dist worksteal

@@ -70,7 +70,7 @@ def test_packages_under_a_copyleft_licence_are_on_the_page() -> None:
     pinned = {line.partition("==")[0].lower() for line in (ROOT / "constraints.txt").read_text().splitlines()}
     for package in distributions():
         stated = package.metadata
-        licence = stated.get("License-Expression") or stated.get("License", "")[:60]  # some give its whole text
+        licence = stated.get("License-Expression") or stated.get("License", "")[:60]  # or a text
         words = [licence, *(stated.get_all("Classifier") or ())]
         if package.name.lower() in pinned and any(re.search("GPL|General Public", word) for word in words):
             assert package.name in COPYLEFT
