@@ -45,7 +45,7 @@ class Record(_Fields):
 
     @property
     def status(self) -> Status:
-        """How the solve ended."""
+        """End of the solve."""
         return self.details.status
 
     @cached_property
