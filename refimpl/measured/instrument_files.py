@@ -21,7 +21,7 @@ import scipy
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
-from refimpl.measured.reading import ARRAY, IMAGE, MAX_POINTS, UNITS, Overrides, RawHeights, checked
+from refimpl.measured.reading import ALONG_Y, ARRAY, IMAGE, MAX_POINTS, UNITS, Overrides, RawHeights, checked
 from refimpl.measured.workarounds import NMS_UNIT, Source, rewritten
 
 T = TypeVar("T")
@@ -99,6 +99,9 @@ def read_as(
             heights, unit, pixel = _loaded(path, reader, index, channel)
     if pixel and name == "nms":
         pixel = NMS_UNIT * pixel[0], NMS_UNIT * pixel[1]
+    wyko = name == "asc" and channel.info["raw_metadata"].get("format_flavor") == "wyko"
+    if wyko:  # one x per line, from the bottom: the library takes lines for rows from the top
+        heights, pixel = heights.T, None if pixel is None else pixel[::-1]
     notes += ("NMS: its spacing is in nm",) if name == "nms" else ()
     stated = unit if unit is None else library.Support.UnitConversion.get_unit_conversion_factor(unit, "m")
     unit, pixel, overridden = given.resolve(path.name, unit, pixel)
@@ -107,11 +110,12 @@ def read_as(
     remarks = [
         f"SurfaceTopography: {first_line(w.message)}" for w in said if issubclass(w.category, UserWarning)
     ]
-    upwards = name in UPWARDS
+    upwards = wyko or name in UPWARDS
     heights = heights * stated
     return RawHeights(
         np.ascontiguousarray(heights if upwards else heights[:, ::-1]),
-        pixel, path.name, f"by SurfaceTopography's {name} reader", unit, ARRAY if upwards else IMAGE,
+        pixel, path.name, f"by SurfaceTopography's {name} reader", unit,
+        ALONG_Y if wyko else ARRAY if upwards else IMAGE,
         str(channel.name), tuple(str(c.name) for c in reader.channels),
         (*notes, *overridden, *remarks),
     )  # fmt: skip

@@ -28,7 +28,9 @@ from refimpl.measured.instrument_files import (
 )
 from refimpl.measured.point_tables import is_triples, on_grid
 from refimpl.measured.reading import IMAGE, MAX_BYTES, MAX_POINTS, UNITS, Overrides, RawHeights, checked
+from refimpl.measured.text_lines import WYKO
 from refimpl.measured.text_tables import TextTable, read_table
+from refimpl.measured.workarounds import wyko_header
 
 __all__ = ["MAX_BYTES", "MAX_POINTS", "UNITS", "Overrides", "RawHeights", "read"]
 
@@ -114,7 +116,7 @@ def _text(path: Path, given: Overrides) -> RawHeights:
     try:
         return _with_header(path, table, given)
     except InputError as refused:
-        if refused.field == "channel":
+        if refused.field == "channel" or table.header[0].startswith(WYKO):
             raise
     if len(table.blocks) > 1:
         raise InputError(
@@ -128,6 +130,8 @@ def _text(path: Path, given: Overrides) -> RawHeights:
 def _with_header(path: Path, table: TextTable, given: Overrides) -> RawHeights:
     """Text whose header says what the library knows: Gwyddion's, SPIP's, Wyko's and others."""
     library = library_for(path)
+    if table.header[0].startswith(WYKO):
+        table = replace(table, header=wyko_header(path, table.header))
     text = table.normalised()
 
     def load(file: Path) -> RawHeights:

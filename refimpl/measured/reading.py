@@ -27,6 +27,7 @@ ASCII = {"µm": "um", "μm": "um", "Å": "A"}
 
 ARRAY = "first index along x, second along y (upwards)"
 IMAGE = "lines along x, the first line at the top"
+ALONG_Y = "lines along y, upwards, the first at the left"
 
 
 @dataclass(frozen=True)

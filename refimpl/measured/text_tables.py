@@ -20,13 +20,10 @@ import numpy as np
 from refimpl.errors import InputError
 from refimpl.grid import Array
 from refimpl.measured.table_labels import is_title, without_labels
+from refimpl.measured.text_lines import NOT_MEASURED, encoding_of, lines_of
 
 MAX_HEADER = 400  # lines before the numbers
 _SAMPLE = 50  # lines by whose entries labels of rows and columns are known
-_PIECE = 2**20  # characters read at a time
-NOT_MEASURED = (
-    "nan", "bad", "na", "n/a", "inf", "-inf", "null", "none", "---", "--", "***", "**", "*", "-",
-)  # fmt: skip
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?")
 _COMMA_NUMBER = re.compile(r"[-+]?(\d+,\d*|,\d+)([eEdD][-+]?\d+)?")
 
@@ -60,31 +57,10 @@ class TextTable:
         return tuple(b - a for a, b in pairwise(sorted({0, *again, len(self.rows)})))
 
 
-def encoding_of(path: Path) -> str:
-    """UTF-8 or UTF-16 by the file's mark, UTF-8 if it is valid, else Latin-1."""
-    with path.open("rb") as file:
-        if file.read(2) in (b"\xff\xfe", b"\xfe\xff"):
-            return "utf-16"
-    try:
-        with path.open(encoding="utf-8-sig") as text:
-            while text.read(_PIECE):
-                pass
-    except UnicodeDecodeError:
-        return "latin-1"
-    return "utf-8-sig"
-
-
-def _lines(path: Path, encoding: str) -> Iterator[tuple[int, str]]:
-    """Number and text of each line, one at a time: a list takes several times what their numbers do."""
-    with path.open(encoding=encoding) as file:
-        for number, line in enumerate(file, 1):
-            yield from ((number, part.strip(" \xa0")) for part in line.splitlines())
-
-
 def read_table(path: Path) -> TextTable:
     """Read the table of numbers in a text file. Raises InputError that says what was found."""
     encoding = encoding_of(path)
-    head = list(islice(_lines(path, encoding), MAX_HEADER + _SAMPLE))
+    head = list(islice(lines_of(path, encoding), MAX_HEADER + _SAMPLE))
     lines = [line for _, line in head]
     layout, start, width = _layout(path, lines)
     sample = [layout.cells(line) for line in lines[start : start + _SAMPLE] if line and line[0] != "#"]
@@ -94,7 +70,7 @@ def read_table(path: Path) -> TextTable:
     def data() -> Iterator[tuple[int, str]]:
         comments.clear()
         count = 0
-        for number, line in islice(_lines(path, encoding), start + titled, None):
+        for number, line in islice(lines_of(path, encoding), start + titled, None):
             if line.startswith("#") and not layout.is_row(line, width):
                 comments.append((count, line))
             elif line.strip() or len(layout.cells(line)) == width:  # tabs alone: missing points

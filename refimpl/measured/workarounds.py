@@ -1,6 +1,6 @@
 """Files that SurfaceTopography refuses or reads wrongly, rewritten in memory so that it reads them right.
 
-As of version 1.27.1: X3P of other writers than its own, compressed SUR, the lateral unit of NMS.
+As of version 1.27.1: X3P of other writers than its own, compressed SUR, the lateral unit of NMS, Wyko's text.
 """
 
 from __future__ import annotations
@@ -82,3 +82,16 @@ def _sur(raw: bytes, path: Path) -> tuple[Source, tuple[str, ...]]:
         at += packed
     plain = b"DIGITAL SURF" + raw[12 : _SUR_HEADER + comment + private] + b"".join(data)
     return io.BytesIO(plain), ("compressed SUR, unpacked here",)
+
+
+def wyko_header(path: Path, header: tuple[str, ...]) -> tuple[str, ...]:
+    """The header of Wyko's text with all numbers as type 7, the one that the library sees, and a Mult.
+
+    Heights are in nm if the second flag of the first line is 1, else in Wavelength / Mult nm.
+    """
+    named = {line.split()[0] for line in header}
+    if "Wavelength" not in named and header[0].split()[-2] != "1":
+        raise InputError("path", str(path), "Wyko's text with a Wavelength, which scales its heights")
+    number = re.compile(r"^(Mult|Wavelength|Aspect|Pixel_size)\s+\d+\s")
+    typed = tuple(number.sub(r"\1 7 ", line) for line in header)
+    return typed if "Mult" in named else (typed[0], "Mult 7 2 1", *typed[1:])

@@ -17,7 +17,7 @@ from refimpl.errors import InputError, size_text
 from refimpl.grid import Grid
 from refimpl.measured import MeasuredSurface, missing_points
 from refimpl.measured.readers import read
-from refimpl.measured.reading import ARRAY, IMAGE
+from refimpl.measured.reading import ALONG_Y, ARRAY, IMAGE
 from tests.refimpl.surfaces import instrument_writers as write
 from tests.refimpl.surfaces.instrument_writers import (
     BOTH,
@@ -47,6 +47,7 @@ FORMATS = [
     ("map.sur", write.write_sur, {}, SINGLE, IMAGE),
     ("packed.sur", write.write_packed_sur, {}, SINGLE, IMAGE),
     ("map.opd", write.write_opd, {}, SINGLE, IMAGE),
+    ("wyko.asc", write.write_wyko_text, {}, 1e-20, ALONG_Y),
     ("map.plu", write.write_plu, {}, SINGLE, IMAGE),
     ("map.gwy", write.write_gwy, {}, 1e-20, IMAGE),
     ("map.nc", write.write_nc, {}, 1e-20, ARRAY),
@@ -178,6 +179,28 @@ def test_sur_with_any_micro_sign(tmp_path: Path, unit: bytes) -> None:
     reading = read(tmp_path / "map.sur")
     same(reading.heights, 1e-12)
     np.testing.assert_allclose(reading.pixel, PIXEL, rtol=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "factor"),
+    [
+        ("Mult\t6\t2\t5\n", "", 5),
+        ("Mult\t6\t2\t5", "Mult\t7\t4\t5.0", 1),
+        ("Format 0\t0", "Format 0\t1", 5 / 633),
+        ("Wavelength\t7\t4\t633.0\n", "", None),
+    ],
+)
+def test_wykos_text_is_in_wavelengths_over_mult(
+    tmp_path: Path, old: str, new: str, factor: float | None
+) -> None:
+    write.write_wyko_text(tmp_path / "map.asc", MAP)
+    changed = (tmp_path / "map.asc").read_text().replace(old, new)
+    (tmp_path / "map.asc").write_text(changed)
+    if factor is None:
+        with pytest.raises(InputError, match="Wyko's text with a Wavelength"):
+            read(tmp_path / "map.asc")
+    else:
+        same(read(tmp_path / "map.asc").heights / factor)
 
 
 def channels(path: Path) -> Path:

@@ -1,7 +1,7 @@
 """Sixty text files as strangers write them, listed with their verdict before any was read.
 
-Each is read with heights and pixel right, what was assumed a note, or refused. Every second one, from the first,
-was used to build the reader; the others were looked at once.
+Each is read with heights and pixel right, what was assumed a note, or refused. Every second one, from the
+first, was used to build the reader; the others were looked at once.
 """
 
 from __future__ import annotations

@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 
 from refimpl.errors import InputError
 from refimpl.measured.readers import read
-from refimpl.measured.text_tables import NOT_MEASURED, read_table
+from refimpl.measured.text_lines import NOT_MEASURED
+from refimpl.measured.text_tables import read_table
 from tests.refimpl.surfaces import instrument_writers as write
 from tests.refimpl.surfaces.instrument_writers import (
     BOTH,
