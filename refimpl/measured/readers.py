@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import zipfile
 from dataclasses import replace
 from pathlib import Path
@@ -26,8 +27,17 @@ from refimpl.measured.instrument_files import (
     read_instrument,
     read_or_refuse,
 )
-from refimpl.measured.point_tables import is_triples, on_grid
-from refimpl.measured.reading import IMAGE, MAX_BYTES, MAX_POINTS, UNITS, Overrides, RawHeights, checked
+from refimpl.measured.point_tables import POINT, is_triples, on_grid
+from refimpl.measured.reading import (
+    IMAGE,
+    MAX_BYTES,
+    MAX_POINTS,
+    UNITS,
+    Overrides,
+    RawHeights,
+    checked,
+    far_points,
+)
 from refimpl.measured.text_lines import WYKO
 from refimpl.measured.text_tables import TextTable, read_table
 from refimpl.measured.workarounds import wyko_header
@@ -36,6 +46,7 @@ __all__ = ["MAX_BYTES", "MAX_POINTS", "UNITS", "Overrides", "RawHeights", "read"
 
 _HEAD = 2**16  # bytes that tell text from binary
 _SAME_PITCH = 0.01  # relative difference of two pitches: digits of a given one
+_UNIT = re.compile(rf"(?<!\w)({'|'.join(UNITS)})(?!\w)")
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 
 
@@ -54,6 +65,13 @@ def read(
     for x and y in another unit. All else is read by SurfaceTopography.
     Raises InputError.
     """
+    found = _read(path, unit, pixel_size, channel)
+    return replace(found, notes=(*found.notes, *far_points(found)))
+
+
+def _read(
+    path: Path, unit: str | None, pixel_size: tuple[float, float] | None, channel: str | int | None
+) -> RawHeights:
     _check_size(path)
     given = Overrides(unit, pixel_size, channel)
     head = read_or_refuse(path, _head)
@@ -146,30 +164,34 @@ def _with_header(path: Path, table: TextTable, given: Overrides) -> RawHeights:
     return found
 
 
-def _check_pitch(path: Path, pitch: tuple[float, float], given: Overrides) -> None:
-    """Raise InputError unless a given pixel is the points' pitch (m), or would be it in another unit.
+def _check_pitch(path: Path, pitch: tuple[float, float], stated: float, given: Overrides) -> None:
+    """Raise InputError unless a given pixel is the points' pitch (m), or would be it in another unit (m).
 
     Some instruments write x and y in mm and z in um.
     """
-    if given.pixel_size is None or given.unit is None:
+    if given.pixel_size is None:
         return
-    ratios = np.divide(given.pixel_size, pitch) * UNITS[given.unit]
-    if not any(np.allclose(ratios, unit, _SAME_PITCH, 0) for unit in UNITS.values()):
+    ratios = np.divide(given.pixel_size, pitch)
+    if not any(np.allclose(ratios, unit / stated, _SAME_PITCH, 0) for unit in UNITS.values()):
         own = f"{size_text(pitch)} m (in one of the units)"
         allowed = f"none, or the pitch of the points in {path.name}, {own}"
         raise InputError("pixel_size", given.pixel_size, allowed)
 
 
 def _points(path: Path, table: TextTable, given: Overrides) -> RawHeights:
-    if given.unit is None:
+    named = next((found for line in table.header if len(found := _UNIT.findall(line)) == POINT), None)
+    own = given.unit or (named and named[-1])
+    if own is None:
         allowed = f"one: {path.name} holds points x, y, z and states no unit"
         raise InputError("unit", None, allowed)
     heights, edges = on_grid(path, table.rows)
-    pitch = edges[0] * UNITS[given.unit], edges[1] * UNITS[given.unit]
-    _check_pitch(path, pitch, given)
-    unit, pixel, notes = given.resolve(path.name, given.unit, pitch)
+    x, y = (UNITS[name] for name in (named or [own, own])[:2])
+    pitch = edges[0] * x, edges[1] * y
+    _check_pitch(path, pitch, x, given)
+    unit, pixel, notes = given.resolve(path.name, named[-1] if named else own, pitch)
     if heights.size > MAX_POINTS:
         raise InputError("path", str(path), f"heights on a grid of at most {MAX_POINTS} points")
-    heights, notes = checked(path, heights * UNITS[given.unit]), (*table.notes, *notes)
+    said = () if named is None else (f"units {', '.join(named)} of x, y, z as the header states them",)
+    heights, notes = checked(path, heights * UNITS[unit]), (*table.notes, *said, *notes)
     source, orientation = "as points x, y, z", "coordinates as the file states them"
     return RawHeights(heights, pixel, path.name, source, unit, orientation, notes=notes)
