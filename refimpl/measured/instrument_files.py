@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import io
 import logging
-import math
 import struct
 import tokenize
 import warnings
@@ -21,7 +20,9 @@ import scipy
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
-from refimpl.measured.reading import ALONG_Y, ARRAY, IMAGE, MAX_POINTS, UNITS, Overrides, RawHeights, checked
+from refimpl.measured.channels import ARRAYS, choose, taken, topography, with_coordinates
+from refimpl.measured.point_tables import points_map
+from refimpl.measured.reading import ALONG_Y, ARRAY, IMAGE, UNITS, Overrides, RawHeights, checked
 from refimpl.measured.workarounds import NMS_UNIT, Source, rewritten
 
 T = TypeVar("T")
@@ -95,8 +96,11 @@ def read_as(
     with quiet, warnings.catch_warnings(record=True) as said, np.errstate(all="ignore"):
         warnings.simplefilter("always")
         with library.open_topography(source, format=name) as reader:
-            index, channel = _choose(path, reader, given)
-            heights, unit, pixel = _loaded(path, reader, index, channel)
+            index, channel = choose(path, name, reader, given)
+            notes += taken(reader, channel)
+            if name in ARRAYS and (points := with_coordinates(reader, channel)) is not None:
+                return points_map(path, points, given, notes=notes)
+            heights, unit, pixel = _loaded(path, reader, index)
     if pixel and name == "nms":
         pixel = NMS_UNIT * pixel[0], NMS_UNIT * pixel[1]
     wyko = name == "asc" and channel.info["raw_metadata"].get("format_flavor") == "wyko"
@@ -121,49 +125,13 @@ def read_as(
     )  # fmt: skip
 
 
-def _choose(path: Path, reader: Any, given: Overrides) -> tuple[int, Any]:
-    """The channel of the given name or number, by default the first map of heights from the library's own."""
-    channels = list(reader.channels)
-    names = [str(c.name) for c in channels]
-    listed = ", ".join(f"{k} {name!r}" for k, name in enumerate(names))
-    if given.channel is None:
-        default = reader._default_channel_index
-        order = [default, *range(len(channels))] if default < len(channels) else range(len(channels))
-        index = next((k for k in order if _is_height(channels[k])), None)
-        if index is None:
-            raise InputError("path", str(path), f"a map of heights (found: {listed or 'no channel'})")
-    elif isinstance(given.channel, int):
-        index = given.channel
-    else:
-        index = next((k for k, name in enumerate(names) if name.casefold() == given.channel.casefold()), -1)
-    if not 0 <= index < len(channels):
-        raise InputError("channel", given.channel, f"a channel of {path.name}: {listed}")
-    channel = channels[index]
-    if channel.dim != 2 or not channel.is_uniform:
-        what = "a line scan" if channel.dim == 1 else "no regular map"
-        raise InputError("path", str(path), f"a map of heights (channel {names[index]!r} is {what})")
-    if not _is_height(channel):
-        raise InputError("channel", given.channel, f"a channel of heights in {path.name}: {listed}")
-    if math.prod(channel.nb_grid_pts) > MAX_POINTS:
-        raise InputError("path", str(path), f"heights on a grid of at most {MAX_POINTS} points")
-    return index, channel
-
-
-def _is_height(channel: Any) -> bool:
-    return channel.dim == 2 and str(getattr(channel.data_kind, "name", "HEIGHT")) == "HEIGHT"
-
-
-def _loaded(
-    path: Path, reader: Any, index: int, channel: Any
-) -> tuple[Array, str | None, tuple[float, float] | None]:
+def _loaded(path: Path, reader: Any, index: int) -> tuple[Array, str | None, tuple[float, float] | None]:
     """Heights in the file's unit (missing: NaN), that unit, and the pixel's edges (m)."""
-    sizes = channel.physical_sizes
-    given = {} if sizes is not None else {"physical_sizes": tuple(map(float, channel.nb_grid_pts))}
-    topography = reader.topography(channel_index=index, **given)
-    heights = checked(path, np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan))
-    unit, pixel = topography.unit, None
+    found, sizes = topography(reader, index), reader.channels[index].physical_sizes
+    heights = checked(path, np.ma.filled(np.ma.asarray(found.heights(), dtype=np.float64), np.nan))
+    unit, pixel = found.unit, None
     if sizes is not None and unit is not None:
-        edges = zip(topography.to_unit("m").physical_sizes, topography.nb_grid_pts, strict=True)
+        edges = zip(found.to_unit("m").physical_sizes, found.nb_grid_pts, strict=True)
         dx, dy = (float(length / n) for length, n in edges)
         pixel = dx, dy
     return heights, unit, pixel

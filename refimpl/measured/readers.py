@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import io
 import os
-import re
 import zipfile
 from dataclasses import replace
 from pathlib import Path
@@ -27,7 +26,7 @@ from refimpl.measured.instrument_files import (
     read_instrument,
     read_or_refuse,
 )
-from refimpl.measured.point_tables import POINT, is_triples, on_grid
+from refimpl.measured.point_tables import is_triples, points_map
 from refimpl.measured.reading import (
     IMAGE,
     MAX_BYTES,
@@ -45,8 +44,6 @@ from refimpl.measured.workarounds import wyko_header
 __all__ = ["MAX_BYTES", "MAX_POINTS", "UNITS", "Overrides", "RawHeights", "read"]
 
 _HEAD = 2**16  # bytes that tell text from binary
-_SAME_PITCH = 0.01  # relative difference of two pitches: digits of a given one
-_UNIT = re.compile(rf"(?<!\w)({'|'.join(UNITS)})(?!\w)")
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 
 
@@ -128,7 +125,7 @@ def _text(path: Path, given: Overrides) -> RawHeights:
             "path", str(path), f"a map (a line scan: {rows} rows of {columns} columns were found)"
         )
     if is_triples(table.rows):
-        return _points(path, table, given)
+        return points_map(path, table.rows, given, table.header, table.notes)
     if not table.header:
         return _plain(path, checked(path, table.rows), given, "as a plain table of text", table)
     try:
@@ -162,36 +159,3 @@ def _with_header(path: Path, table: TextTable, given: Overrides) -> RawHeights:
         )
         raise InputError("path", str(path), allowed)
     return found
-
-
-def _check_pitch(path: Path, pitch: tuple[float, float], stated: float, given: Overrides) -> None:
-    """Raise InputError unless a given pixel is the points' pitch (m), or would be it in another unit (m).
-
-    Some instruments write x and y in mm and z in um.
-    """
-    if given.pixel_size is None:
-        return
-    ratios = np.divide(given.pixel_size, pitch)
-    if not any(np.allclose(ratios, unit / stated, _SAME_PITCH, 0) for unit in UNITS.values()):
-        own = f"{size_text(pitch)} m (in one of the units)"
-        allowed = f"none, or the pitch of the points in {path.name}, {own}"
-        raise InputError("pixel_size", given.pixel_size, allowed)
-
-
-def _points(path: Path, table: TextTable, given: Overrides) -> RawHeights:
-    named = next((found for line in table.header if len(found := _UNIT.findall(line)) == POINT), None)
-    own = given.unit or (named and named[-1])
-    if own is None:
-        allowed = f"one: {path.name} holds points x, y, z and states no unit"
-        raise InputError("unit", None, allowed)
-    heights, edges = on_grid(path, table.rows)
-    x, y = (UNITS[name] for name in (named or [own, own])[:2])
-    pitch = edges[0] * x, edges[1] * y
-    _check_pitch(path, pitch, x, given)
-    unit, pixel, notes = given.resolve(path.name, named[-1] if named else own, pitch)
-    if heights.size > MAX_POINTS:
-        raise InputError("path", str(path), f"heights on a grid of at most {MAX_POINTS} points")
-    said = () if named is None else (f"units {', '.join(named)} of x, y, z as the header states them",)
-    heights, notes = checked(path, heights * UNITS[unit]), (*table.notes, *said, *notes)
-    source, orientation = "as points x, y, z", "coordinates as the file states them"
-    return RawHeights(heights, pixel, path.name, source, unit, orientation, notes=notes)

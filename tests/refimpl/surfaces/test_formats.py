@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 import pytest
 import SurfaceTopography
+from scipy.io import savemat
 
 from refimpl.errors import InputError, size_text
 from refimpl.grid import Grid
@@ -22,6 +23,8 @@ from tests.refimpl.surfaces import instrument_writers as write
 from tests.refimpl.surfaces.instrument_writers import (
     BOTH,
     MAP,
+    NX,
+    NY,
     PIXEL,
     Writer,
     same,
@@ -268,3 +271,25 @@ def test_a_map_of_which_almost_all_is_missing_is_filled() -> None:
     assert np.isfinite(filled).all()
     assert (filled >= 1.0).all()
     assert (filled <= 2.0).all()
+
+
+@pytest.mark.parametrize("suffix", [".mat", ".npz"])
+@pytest.mark.parametrize("grid", ["xy", "ij", "vectors"])
+def test_z_beside_x_and_y_is_the_map_where_they_say(tmp_path: Path, suffix: str, grid: str) -> None:
+    """MATLAB's meshgrid has x along the columns; the arrays tell, and the pitch."""
+    x, y = 2.0 * np.arange(NX), 3.0 * np.arange(NY)
+    z = 1e6 * (MAP if grid == "ij" else MAP.T)
+    arrays = dict(zip("XYZ", (x[None, :], y[:, None], z), strict=True))
+    if grid != "vectors":
+        arrays |= dict(zip("XY", np.meshgrid(x, y, indexing=grid), strict=True))
+    save = savemat if suffix == ".mat" else lambda path, a: np.savez(path, **a)
+    save(tmp_path / f"a{suffix}", arrays)
+    found = read(tmp_path / f"a{suffix}", unit="um")
+    same(found.heights, 1e-20)
+    np.testing.assert_allclose(found.pixel, PIXEL, rtol=1e-12)
+    assert found.notes == ("channel 'Z' was read; there are also 'X', 'Y'",)
+    solved = MeasuredSurface(tmp_path / f"a{suffix}", unit="um").notes(Grid((8, 8), (8e-6, 12e-6)))
+    assert any("channel 'Z' was read" in note for note in solved)
+    save(tmp_path / f"b{suffix}", {"first": z, "second": z})
+    with pytest.raises(InputError, match=r"channel = None: .*heights in b\.\w+: 0 'first', 1 'second'"):
+        read(tmp_path / f"b{suffix}", **BOTH)
