@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -23,41 +24,57 @@ def choose(path: Path, form: str, reader: Any, given: Overrides) -> tuple[int, A
     """
     channels = list(reader.channels)
     names = [str(c.name) for c in channels]
-    listed = ", ".join(f"{k} {name!r}" for k, name in enumerate(names))
-    if given.channel is None:
-        index = _default(channels, reader, form in ARRAYS)
-        if index is None:
-            raise InputError("path", str(path), f"a map of heights (found: {listed or 'no channel'})")
-        if index < 0:
-            raise InputError("channel", None, f"the one that is heights in {path.name}: {listed}")
-    elif isinstance(given.channel, int):
-        index = given.channel
-    else:
-        index = next((k for k, name in enumerate(names) if name.casefold() == given.channel.casefold()), -1)
-    if not 0 <= index < len(channels):
-        raise InputError("channel", given.channel, f"a channel of {path.name}: {listed}")
+    maps = [] if given.channel is not None else _maps(channels, reader, form in ARRAYS)
+    if given.channel is None and not maps:
+        raise InputError("path", str(path), f"a map of heights (found: {_listed(names) or 'no channel'})")
+    sure = maps and (form not in ARRAYS or len(maps) == 1)
+    index = maps[0] if sure else chosen(path, names, given.channel)
     channel = channels[index]
     if channel.dim != 2 or not channel.is_uniform:
         what = "a line scan" if channel.dim == 1 else "no regular map"
         raise InputError("path", str(path), f"a map of heights (channel {names[index]!r} is {what})")
     if not _is_height(channel):
-        raise InputError("channel", given.channel, f"a channel of heights in {path.name}: {listed}")
+        raise InputError("channel", given.channel, f"a channel of heights in {path.name}: {_listed(names)}")
     if math.prod(channel.nb_grid_pts) > MAX_POINTS:
         raise InputError("path", str(path), f"heights on a grid of at most {MAX_POINTS} points")
     return index, channel
 
 
-def _default(channels: list[Any], reader: Any, arrays: bool) -> int | None:
-    """Index of the map; None: there is none, -1: several may be."""
+def chosen(path: Path, names: list[str], channel: str | int | None) -> int:
+    """Index of the channel of a name or number; None: the only one. Raises InputError with all there are."""
+    if channel is None and len(names) != 1:
+        raise InputError("channel", None, f"the one that is heights in {path.name}: {_listed(names)}")
+    if isinstance(channel, str):
+        index = next((k for k, name in enumerate(names) if name.casefold() == channel.casefold()), -1)
+    else:
+        index = channel or 0
+    if not 0 <= index < len(names):
+        raise InputError("channel", channel, f"a channel of {path.name}: {_listed(names)}")
+    return index
+
+
+def _listed(names: list[str]) -> str:
+    return ", ".join(f"{k} {name!r}" for k, name in enumerate(names))
+
+
+def _maps(channels: list[Any], reader: Any, arrays: bool) -> list[int]:
+    """Maps of heights, from the library's own on; of several arrays those that are named as heights are."""
     default = reader._default_channel_index
     order = [default, *range(len(channels))] if default < len(channels) else range(len(channels))
-    maps = [k for k in order if _is_height(channels[k])]
-    if arrays:
-        maps = [k for k in dict.fromkeys(maps) if min(channels[k].nb_grid_pts) > 1] or maps
-        if len(maps) > 1:
-            maps = [k for k in maps if str(channels[k].name).casefold() in HEIGHTS]
-            return maps[0] if len(maps) == 1 else -1
-    return maps[0] if maps else None
+    maps = [k for k in dict.fromkeys(order) if _is_height(channels[k])]
+    if not arrays:
+        return maps
+    maps = [k for k in maps if min(channels[k].nb_grid_pts) > 1] or maps
+    named = [k for k in maps if str(channels[k].name).casefold() in HEIGHTS]
+    return named if len(named) == 1 else maps
+
+
+def is_container(path: Path) -> bool:
+    """Return whether the file is an archive with the metadata of contact.engineering."""
+    if not zipfile.is_zipfile(path):
+        return False
+    with zipfile.ZipFile(path) as archive:
+        return bool({"meta.yml", "index.json"} & set(archive.namelist()))
 
 
 def _is_height(channel: Any) -> bool:

@@ -82,8 +82,9 @@ def points_map(
     path: Path, points: Array, given: Overrides, header: tuple[str, ...] = (), notes: tuple[str, ...] = ()
 ) -> RawHeights:
     """The map of points x, y, z in the given unit, or in the three that a line of the header names."""
-    named = next((found for line in header if len(found := _UNIT.findall(line)) == POINT), None)
-    own = given.unit or (named and named[-1])
+    found: list[list[str]] = [_UNIT.findall(line) for line in header]
+    named = next((units for units in found if len(units) == POINT), None)
+    own = given.unit or (named[-1] if named else None)
     if own is None:
         allowed = f"one: {path.name} holds points x, y, z and states no unit"
         raise InputError("unit", None, allowed)

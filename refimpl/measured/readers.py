@@ -16,6 +16,7 @@ import numpy as np
 
 from refimpl.errors import InputError, size_text
 from refimpl.grid import Array
+from refimpl.measured.file_kinds import kind_of
 from refimpl.measured.instrument_files import (
     CORRUPT,
     claimed_by_magic,
@@ -76,7 +77,7 @@ def _read(
         return _plain(path, checked(path, read_or_refuse(path, _npy)), given, "as a plain array")
     is_text = head.startswith(_UTF16) or b"\0" not in head
     if is_text and not claimed_by_magic(path, head):
-        return read_or_refuse(path, lambda file: _text(file, given))
+        return read_or_refuse(path, lambda file: _text(file, given, head))
     return read_instrument(path, given, head)
 
 
@@ -115,7 +116,9 @@ def _plain(
     return RawHeights(raw * UNITS[unit], pixel, path.name, source, unit, notes=notes)
 
 
-def _text(path: Path, given: Overrides) -> RawHeights:
+def _text(path: Path, given: Overrides, head: bytes) -> RawHeights:
+    if kind := kind_of(path, head):
+        raise InputError("path", str(path), kind)
     table = read_table(path)
     rows, columns = table.rows.shape
     if path.suffix.lower() == ".xyz" and columns not in (2, 3):

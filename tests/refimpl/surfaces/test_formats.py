@@ -12,7 +12,9 @@ import h5py
 import numpy as np
 import pytest
 import SurfaceTopography
+import SurfaceTopography.Container.IO
 from scipy.io import savemat
+from SurfaceTopography.Container.SurfaceContainer import InMemorySurfaceContainer
 
 from refimpl.errors import InputError, size_text
 from refimpl.grid import Grid
@@ -293,3 +295,81 @@ def test_z_beside_x_and_y_is_the_map_where_they_say(tmp_path: Path, suffix: str,
     save(tmp_path / f"b{suffix}", {"first": z, "second": z})
     with pytest.raises(InputError, match=r"channel = None: .*heights in b\.\w+: 0 'first', 1 'second'"):
         read(tmp_path / f"b{suffix}", **BOTH)
+
+
+@pytest.mark.parametrize(("kind", "missing"), [("D", True), ("I", False)])
+def test_x3p_with_its_heights_in_the_xml(tmp_path: Path, kind: str, missing: bool) -> None:
+    """As the standard's own samples: a Datum for each point; whole numbers with increment and offset."""
+    z = MAP if missing else COMPLETE
+    write.write_x3p(tmp_path / "map.x3p", z)
+    with zipfile.ZipFile(tmp_path / "map.x3p") as archive:
+        main = archive.read("main.xml").decode()
+    step, low = (1.0, 0.0) if kind == "D" else (1e-9, 1e-8)
+    shown = [f"{(v - low) / step:.17g}" if kind == "D" else f"{(v - low) / step:.0f}" for v in z.T.ravel()]
+    listed = "".join("<Datum/>" if v == "nan" else f"<Datum> {v}\n</Datum>" for v in shown)
+    head, rest = main.split("<DataLink>")
+    scale = f"<DataType>{kind}</DataType><Increment>{step}</Increment><Offset>{low}</Offset>\n</CZ>"
+    head = head[: head.index("<DataType>", head.index("<CZ>"))] + scale + head[head.index("</CZ>") + 5 :]
+    main = f"{head}<!-- <Datum>9</Datum> --><DataList>{listed}</DataList>{rest.split('</DataLink>')[1]}"
+    with zipfile.ZipFile(tmp_path / "map.x3p", "w") as archive:
+        archive.writestr("main.xml", main)
+    reading = read(tmp_path / "map.x3p")
+    np.testing.assert_allclose(reading.heights, z, rtol=0, atol=1e-20)
+    np.testing.assert_allclose(reading.pixel, PIXEL, rtol=1e-12)
+    assert reading.notes == ("X3P with its heights in main.xml",)
+
+
+def test_a_container_of_contact_engineering_gives_each_of_its_maps(tmp_path: Path) -> None:
+    """Written by the library, with netCDF files inside, as the store's own downloads have."""
+    one, two = write.topography(MAP), write.topography(2 * COMPLETE)
+    for name, map_ in (("one", one), ("two", two)):
+        map_.info["name"] = name
+    for maps, path in (([one, two], "both.zip"), ([two], "two.zip")):
+        SurfaceTopography.Container.IO.write_containers(
+            [InMemorySurfaceContainer(maps)], str(tmp_path / path)
+        )
+    with pytest.raises(
+        InputError, match=r"channel = None: expected the one that is heights in both.zip: 0 '"
+    ):
+        read(tmp_path / "both.zip")
+    both = [read(tmp_path / "both.zip", channel=k) for k in (0, 1)]
+    same(both[0].heights, 1e-18)
+    np.testing.assert_allclose(both[1].heights, 2 * COMPLETE, rtol=0, atol=1e-18)
+    np.testing.assert_allclose(both[0].pixel, PIXEL, rtol=1e-9)
+    assert "of a container of contact.engineering" in both[0].notes[0]
+    assert len(both[0].channels) == 2
+    assert read(tmp_path / "two.zip").orientation == ARRAY
+    with pytest.raises(InputError, match=r"a channel of both\.zip"):
+        read(tmp_path / "both.zip", channel="three")
+
+
+GSF = b"Gwyddion Simple Field 1.0\nXRes = 2\nYRes = 2\n\0\0\0\0" + bytes(16)
+STL = b"made by hand".ljust(80) + b"\2\0\0\0" + bytes(100)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "kind", "remedy"),
+    [
+        ("a.png", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR" + bytes(90), "PNG picture", "brightness is not heights"),
+        ("a.dat", b"\xff\xd8\xff\xe0\0\x10JFIF" + bytes(90), "JPEG picture", "export heights"),
+        ("a.gsf", GSF, "Gwyddion simple field", r"as \.gwy"),
+        ("a.stl", STL, "STL mesh", "resample"),
+        ("b.stl", b"solid plate\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1\n", "STL mesh", "resample"),
+        ("a.xls", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600), "Excel or OLE", "CSV"),
+        ("a.pdf", b"%PDF-1.4\n1 0 obj\n", "PDF", "export"),
+        ("xl/workbook.xml", None, "Excel file", "CSV"),
+        ("notes.txt", None, "ZIP archive of other files", "unpack"),
+    ],
+)
+def test_a_file_of_another_kind_is_named_with_the_remedy(
+    tmp_path: Path, name: str, content: bytes | None, kind: str, remedy: str
+) -> None:
+    path = tmp_path / Path(name).name
+    if content is None:
+        path = tmp_path / "a.zip"
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr(name, "hello")
+    else:
+        path.write_bytes(content)
+    with pytest.raises(InputError, match=rf"expected a map of heights: this is an? {kind}.*; .*{remedy}"):
+        MeasuredSurface(path, unit="um", pixel_size=1e-6).reading  # noqa: B018  # reading is what raises

@@ -254,8 +254,10 @@ def test_a_micro_sign_in_any_encoding(tmp_path: Path, encoding: str) -> None:
     np.testing.assert_allclose(reading.pixel, PIXEL, rtol=1e-12)
 
 
-SPELLINGS = ("1.#QNAN", "-1.#IND", "1.#INF", "-1.#INF00e+000", "-1.#IND00", "1.#J", "#N/A", "#DIV/0!", "#VALUE!",
-             "#WERT!", "#NV", "nan(snan)")  # fmt: skip
+SPELLINGS = (
+    "1.#QNAN", "-1.#IND", "1.#INF", "-1.#INF00e+000", "-1.#IND00", "1.#J", "#N/A", "#DIV/0!", "#VALUE!",
+    "#WERT!", "#NV", "nan(snan)",
+)  # fmt: skip
 
 
 @pytest.mark.parametrize("separator", [",", "\t", ";", " "])
