@@ -35,8 +35,8 @@ def kind_of(path: Path, head: bytes) -> str | None:
     if found is None and zipfile.is_zipfile(path):
         with zipfile.ZipFile(path) as archive:
             names = archive.namelist()
-        archive_kind = ("a ZIP archive of other files", "unpack it")
-        found = next((row[1:] for row in _MEMBERS if any(n.startswith(row[0]) for n in names)), archive_kind)
+        others = ("a ZIP archive of other files", "unpack it") if path.suffix.lower() == ".zip" else None
+        found = next((row[1:] for row in _MEMBERS if any(n.startswith(row[0]) for n in names)), others)
     header, count, facet = _STL
     size = header + struct.calcsize(count)
     if found is None and len(head) > size:

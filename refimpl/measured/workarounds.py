@@ -48,7 +48,8 @@ def _x3p(path: Path) -> tuple[Source, tuple[str, ...]]:
         revision = re.search(rb"<Revision>\s*([^<]*?)\s*</Revision>", text)
         found = revision.group(1).decode("latin-1") if revision else ""
         backslash = re.search(rb"<\w*Link>[^<]*\\[^<]*<", text)
-        values = None if b"<DataLink>" in text else _data_list(text)
+        bare = re.sub(rb"<!--.*?-->", b"", text, flags=re.DOTALL)
+        values = None if b"<DataLink>" in bare else _data_list(path, bare)
         plain = not folder and found == X3P_REVISION and not backslash and main == "main.xml"
         if plain and values is None:
             return str(path), ()
@@ -58,7 +59,7 @@ def _x3p(path: Path) -> tuple[Source, tuple[str, ...]]:
         copy = io.BytesIO()
         with zipfile.ZipFile(copy, "w") as target:
             if values is not None:
-                text = _linked(text)
+                text = _linked(re.sub(rb"<!--.*?-->", b"", text, flags=re.DOTALL))
                 target.writestr(_X3P_DATA, values.tobytes())
             target.writestr("main.xml", text)
             for member in archive.namelist():
@@ -71,11 +72,11 @@ def _x3p(path: Path) -> tuple[Source, tuple[str, ...]]:
     return copy, (f"X3P with {', '.join(changed)}",) if changed else ()
 
 
-def _data_list(text: bytes) -> Array:
+def _data_list(path: Path, text: bytes) -> Array:
     """Heights that stand in the XML, missing ones NaN."""
-    values = re.findall(
-        rb"<Datum\s*(?:/>|>([^<]*)</Datum>)", re.sub(rb"<!--.*?-->", b"", text, flags=re.DOTALL)
-    )
+    values = re.findall(rb"<Datum\s*(?:/>|>([^<]*)</Datum>)", text)
+    if any(b";" in v for v in values):
+        raise InputError("path", str(path), "X3P of a map of heights (this lists points of several axes)")
     return np.array([float(v) if v.strip() else np.nan for v in values], dtype="<f8")
 
 
