@@ -310,7 +310,8 @@ def test_x3p_with_its_heights_in_the_xml(tmp_path: Path, kind: str, missing: boo
     head, rest = main.split("<DataLink>")
     scale = f"<DataType>{kind}</DataType><Increment>{step}</Increment><Offset>{low}</Offset>\n</CZ>"
     head = head[: head.index("<DataType>", head.index("<CZ>"))] + scale + head[head.index("</CZ>") + 5 :]
-    main = f"{head}<!-- <DataLink> <Datum>9</Datum> --><DataList>{listed}</DataList>{rest.split('</DataLink>')[1]}"
+    comment = "<!-- <DataLink> <Datum>9</Datum> -->"
+    main = f"{head}{comment}<DataList>{listed}</DataList>{rest.split('</DataLink>')[1]}"
     with zipfile.ZipFile(tmp_path / "map.x3p", "w") as archive:
         archive.writestr("main.xml", main)
     reading = read(tmp_path / "map.x3p")
