@@ -203,21 +203,14 @@ class MeasuredSurface(Surface):
             f"{name}: the window of {size_text(grid.lengths)} m about {self._about} is used, "
             f"{size_text(part.stop - part.start for part in window.points)} points, resampled bicubically to "
             f"{grid} elements",
-            *(f"{name}: {note}" for note in self._origin),
+            f"{name}: {reading.orientation}",
             *self.notes(grid),
         )
 
     @property
     def file_notes(self) -> tuple[str, ...]:
         """Channel, orientation and what was changed in reading and preparing the file."""
-        return (*self._origin, *self.prepared.notes)
-
-    @property
-    def _origin(self) -> tuple[str, ...]:
-        reading = self.reading
-        others = [name for name in reading.channels if name != reading.channel]
-        several = (f"channel {reading.channel!r} was read; there are also {', '.join(map(repr, others))}",)
-        return (reading.orientation, *(several if others else ()))
+        return (self.reading.orientation, *self.prepared.notes)
 
     @property
     def _about(self) -> str:
