@@ -1,4 +1,4 @@
-"""The test plate: a worn steel plate as a profilometer exports it, beside the continuous surface that it is of.
+"""The test plate: a worn steel plate as a profilometer exports it, beside its known continuous surface.
 
 A ball presses on it. What a user's map has and a formula has not is added one by one: tilt, spikes, missing
 points, scars. So every number from the map has a truth, that of the surface itself.

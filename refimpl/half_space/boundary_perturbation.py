@@ -32,6 +32,7 @@ from refimpl.model.slopes import Slopes
 
 Complex = NDArray[np.complex128]
 Vector = tuple[Array, Array]
+Strains = tuple[Array, Array, Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +120,7 @@ class _Body:
         ahead, across = f * slopes.tan_x, f * slopes.tan_y
         return -along * slopes.tan_x, (cos * ahead - sin * across, sin * ahead + cos * across)
 
-    def _surface_fields(self, pressed: Complex, sheared: Complex) -> tuple[Vector, tuple[Array, Array, Array]]:
+    def _surface_fields(self, pressed: Complex, sheared: Complex) -> tuple[Vector, Strains]:
         """In-plane displacements (m) and strains xx, yy, xy of a half-space's surface under f and r."""
         E, nu, ik, direction = self.modulus, self.material.nu, self.ik, self.contact.direction
         towards = self.sign * np.cos(direction), self.sign * np.sin(direction)

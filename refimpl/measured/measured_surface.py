@@ -226,6 +226,9 @@ class MeasuredSurface(Surface):
     def pitch(self, lengths: tuple[float, float]) -> float:
         return min(self.reading.pixel)
 
+    def data_points(self, grid: Grid) -> tuple[Array, tuple[float, float]]:
+        return self._central(grid.lengths)[2], self._oriented.reading.pixel
+
     def notes(self, grid: Grid) -> tuple[str, ...]:
         """Notes on reading and preparation, the form subtracted, filled points and doubtful sizes."""
         name, window = self._file.name, self._crop(grid.lengths)

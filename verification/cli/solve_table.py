@@ -54,8 +54,12 @@ def document(solution: Solution, scene: str) -> dict[str, object]:
     return {"scene": scene, **summary, "not_usable": not_usable(solution), "provenance": provenance()}
 
 
-def table(solution: Solution, scene: str) -> str:
-    """Return the numbers, how well they converged, the terms not modelled, and the warnings."""
+def table(solution: Solution, scene: str, waited: float | None = None) -> str:
+    """Return the numbers, how well they converged, the terms not modelled, and the warnings.
+
+    ``waited`` : seconds with reading, bars and warnings; by default those of the solves alone
+    """
+    seconds = solution.cost.seconds if waited is None else waited
     found = [_row(solution, *quantity) for quantity in QUANTITIES]
     if solution.plastic_area:
         name = f"plastic area, {solution.plastic_share:.1%} of A"
@@ -71,7 +75,7 @@ def table(solution: Solution, scene: str) -> str:
         if not term["included"]
     ]
     parts = [
-        f"{scene}: {solution.grid} elements, method {summary['method']}, {summary['cost']['seconds']:.2f} s\n"
+        f"{scene}: {solution.grid} elements, method {summary['method']}, {seconds:.2f} s\n"
         + wrapped(NEXT.get(solution.status.name, ""), f"status: {solution.status.name}  "),
         columns(found),
         f"certificate, each residual within {solution.tolerance:g} (0 is exact):\n{columns(certificate)}",
