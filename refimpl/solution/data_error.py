@@ -78,8 +78,7 @@ def _interpolation_loss(z: Array, periodic: bool) -> float:
         if len(values) < _LEAST_POINTS:
             missed, total = missed + _mean_square(values), total + _mean_square(values)
             continue
-        if periodic:
-            values = np.concatenate([values[-3:], values, values[:3]])
+        values = np.concatenate([values[len(values) - 3 * periodic :], values, values[: 3 * periodic]])
         middle = (9 * (values[2:-4] + values[4:-2]) - values[:-6] - values[6:]) / 16
         missed += _mean_square(values[3:-3] - middle)
         total += _mean_square(np.diff(values[3:-2], axis=0))
@@ -95,6 +94,6 @@ def _squared_gradient(z: Array, spacings: tuple[float, float], periodic: bool) -
     """Mean square of neighbouring points' differences over their distance, both axes."""
     total = 0.0
     for values, spacing in zip((z, z.T), spacings, strict=True):
-        around = np.concatenate([values, values[:1]]) if periodic else values
+        around = np.concatenate([values, values[: int(periodic)]])
         total += _mean_square(np.diff(around, axis=0)) / spacing**2
     return total
