@@ -15,7 +15,7 @@ from refimpl.model.problem import Problem
 _REST = 0.25  # N times tan^2: with 0.2, which is stated, the largest left by 24 finite-element contacts
 ALLOWED = 0.05  # stated error of N at a given approach
 _FIRST = 0.7  # N's error over the slope's tangent for nu = 0: 0.53 to 0.68 measured at 15 to 2.5 degrees
-_MARGIN = 1.5  # of that, in the bound; first orders that are stated are at most 1.2 of it, with finite strain
+_MARGIN = 1.5  # of that, in the bound: 79 of 80 random contacts stay below it, the other states 0.6 %
 _AROUND = 32  # least margin of the window around the contact, elements
 
 
@@ -40,7 +40,7 @@ def half_space_excess(problem: Problem, state: State) -> tuple[float, str] | Non
     """Return the stated error of N and the warning's text where it exceeds `ALLOWED`; else None.
 
     A bound by the slopes alone comes first; what exceeds it is computed in a window three times as wide as
-    the contact, where 100 contacts have 0.85 to 1.02 of what they have on the whole grid (a test).
+    the contact: 18 of 80 random contacts stated more than 4 %, with 0.97 to 1.00 of the whole grid's number.
     """
     steep = steepness(problem, state.contact)
     bound = _MARGIN * _first_order(problem, math.sqrt(steep)) + (_REST + SECOND_ORDER["normal_force"]) * steep
