@@ -80,7 +80,7 @@ def refine_until(
     remaining, refusal = [M * slenderness for M in grid_sizes], ""
     while results[-1].touching and (bound := relative_bound(results, quantity)) > accuracy:
         if math.isinf(_own_bound(results[-1], quantity)):
-            return Refinement(tuple(results), "the domain cuts the contact off: enlarge it")
+            return Refinement(tuple(results), _CUT_OFF)
         value, last = abs(results[-1].numbers[quantity]), longer_side(results[-1])
         stuck = unfalling(results, quantity, data)
         least = sum(stuck.values()) / value if value else 0.0
@@ -145,6 +145,8 @@ def neglected_matter(result: GridFeatures, quantity: str, room: float) -> bool:
 
 def reason_unreachable(stuck: Mapping[str, float], value: float, accuracy: float) -> str:
     """Return which parts exceed the accuracy on every grid, their sizes, and what would help."""
+    if math.isinf(sum(stuck.values())):
+        return _CUT_OFF
     sizes = {name: part / value for name, part in stuck.items() if part > 0}
     if not sum(sizes.values()) > accuracy:
         return ""
@@ -153,6 +155,7 @@ def reason_unreachable(stuck: Mapping[str, float], value: float, accuracy: float
     return f"no grid reduces what is left open by {shown} of it; {_STUCK[largest][1]}"
 
 
+_CUT_OFF = "the domain cuts the contact off: enlarge it"
 _STUCK = {
     "data": ("what lies between the points of the data", "a map with a finer pitch would"),
     "border": ("the contact beyond the border", "a larger domain would"),
