@@ -23,6 +23,7 @@ from refimpl.measured.areal_parameters import (
 from refimpl.measured.measured_surface import MeasuredSurface
 from refimpl.measured.missing_points import fill
 from refimpl.measured.roughness_fit import RoughnessFit, fit_roughness
+from refimpl.measured.standing_out import standing_out
 from refimpl.surfaces.surface import pixel_edges
 
 SAL_LEVEL = 0.2  # ISO 25178-2
@@ -146,7 +147,11 @@ class Inspection:
             "window": {"points": list(self.z.shape), "missing": int(np.isnan(self.z).sum())},
             "parameters": self.parameters,
             "deviations": self.deviations,
-            "notes": [*self.surface.prepared.notes, *implausible_slope(self.z, self.pixel)],
+            "notes": [
+                *self.surface.prepared.notes,
+                *standing_out(self.z, self.pixel),
+                *implausible_slope(self.z, self.pixel),
+            ],
         }
 
 

@@ -18,6 +18,7 @@ from refimpl.measured.missing_points import fill
 from refimpl.measured.orientation import Oriented, check_orientation, checked_centre, oriented
 from refimpl.measured.preparation import check_preparation, prepare
 from refimpl.measured.readers import UNITS, RawHeights, read
+from refimpl.measured.standing_out import standing_out
 from refimpl.measured.untrusted import read_untrusted, refuse_huge
 from refimpl.surfaces.bicubic import MEMORY, resample, resample_periodic
 from refimpl.surfaces.from_table import KINDS
@@ -219,6 +220,9 @@ class MeasuredSurface(Surface):
     def pitch(self, lengths: tuple[float, float]) -> float:
         return min(self.reading.pixel)
 
+    def data_points(self, grid: Grid) -> tuple[Array, tuple[float, float]]:
+        return self._central(grid.lengths)[2], self._oriented.reading.pixel
+
     def notes(self, grid: Grid) -> tuple[str, ...]:
         """Notes on reading and preparation, the form subtracted, filled points and doubtful sizes."""
         name, window = self._file.name, self._crop(grid.lengths)
@@ -232,7 +236,7 @@ class MeasuredSurface(Surface):
                 f"{name}: level {self.level!r} fitted in the window (slopes {tilt}{bent}) and subtracted; "
                 f"rms height there {np.nanstd(z):.4g} m before, {np.nanstd(rest):.4g} m after"
             )
-        said += [f"{name}: {note}" for note in implausible_slope(rest, pixel)]
+        said += [f"{name}: {note}" for note in (*standing_out(rest, pixel), *implausible_slope(rest, pixel))]
         if window.lost:
             said.append(
                 f"{name}: {window.lost} of {window.size} points in the window are missing, filled in here"

@@ -88,7 +88,7 @@ def run(options: argparse.Namespace) -> int:
     _check_suffixes(store=options.store, **written)
     if options.scheduler is None:  # a cluster's memory is not this machine's
         posable.check_memory(study)
-    for note in study.notes:
+    for note in (*study.notes, *directions_note(study)):
         print(f"rough-friction sweep: {note}", file=sys.stderr)
     line = _Line()
     try:
@@ -104,6 +104,21 @@ def run(options: argparse.Namespace) -> int:
         return 1
     _export(options, done, store)
     return 1 if done.failures or done.unconverged else 0
+
+
+def directions_note(study: Study) -> list[str]:
+    """Return a hint where directions vary and one has no opposite; else nothing."""
+    turns = [float(phi) for phi in study.vary.get("sliding_direction", ())]
+    if len(turns) < 2 or all(any(_opposite(one, other) for other in turns) for one in turns):
+        return []
+    return [
+        "mu over the direction holds the mean slope of a single specimen, which looks like lay: average each "
+        "phi with phi + pi, where it has the opposite sign"
+    ]
+
+
+def _opposite(one: float, other: float) -> bool:
+    return math.cos(one - other) < -1 + 1e-6
 
 
 def check_plot(options: argparse.Namespace, study: Study) -> None:
