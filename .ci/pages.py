@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import griffe
+from latex2mathml.converter import convert
 
 from verification.cli import parser
 
@@ -17,6 +18,9 @@ LAST = "---\nsearch: {boost: 5e-4}\n---\n\n"  # in search results, where titles 
 NAMED = re.compile(r"^```(\w+) (\S+)$", flags=re.M)
 PACKAGE = f"{LAST}::: %s\n    options: {{heading_level: 1}}"
 DOCTEST = re.compile(r"^(>>> .*\n?(?:.+\n?)*)", flags=re.M)
+FORMULA = re.compile(
+    r"^```.*?^```$|`[^`\n]+`|^\$\$\n(?P<block>.+?)\n\$\$$|\$(?P<inline>[^$\s][^$\n]*)\$", flags=re.M | re.S
+)
 FIELD = re.compile(r"^(\*{0,2}\w+(?:, \w+)*) : (.+)$", flags=re.M)
 
 
@@ -32,6 +36,13 @@ class Docstrings(griffe.Extension):
         self.on_object(obj=mod)
 
 
+def formula(found: re.Match[str]) -> str:
+    """Return a formula as MathML, and code as it is."""
+    if found["block"]:
+        return f"<div class='formula'>{convert(found['block'], display='block')}</div>"
+    return f"<span>{convert(found['inline'])}</span>" if found["inline"] else found[0]
+
+
 def pages() -> Iterator[tuple[str, str]]:
     """Yield the name and the text of each page."""
     globs = ("README.md", "CHANGELOG.md", "reports/**/R*.md", "docs/*.md")
@@ -42,6 +53,7 @@ def pages() -> Iterator[tuple[str, str]]:
             shown = f"```{name.suffix[1:]}\n{name.read_text(encoding='utf-8')}```\n"
             yield f"{name}.md", f"{LAST}# {name}\n\n{shown}"
         text += "\n".join(options(parser())) if path.stem == "command-line" else ""
+        text = FORMULA.sub(formula, text)
         yield str(path), NAMED.sub(r'```\1 title="\2"', SOURCE.sub(r"\1.md", text)).replace(".ipynb)", ".md)")
     starts = [path.parent for top in PACKAGES for path in sorted(Path(top).rglob("__init__.py"))]
     packages = {".".join(start.parts): start for start in starts}
