@@ -45,7 +45,7 @@ def formula(found: re.Match[str]) -> str:
 
 def pages() -> Iterator[tuple[str, str]]:
     """Yield the name and the text of each page."""
-    globs = ("README.md", "CHANGELOG.md", "reports/**/R*.md", "docs/*.md")
+    globs = ("README.md", "C*.md", "SECURITY.md", "reports/**/R*.md", "docs/*.md")
     for path in [path for glob in globs for path in Path().glob(glob)]:
         text = (LAST if path.parts[0] == "reports" else "") + path.read_text(encoding="utf-8")
         for link in SOURCE.findall(text):

@@ -20,7 +20,7 @@ across = np.array([s.binormal_force / scene.load for s in found])
 print(f"{COUNT} directions, {sum(s.status.name in ('CONVERGED', 'CYCLED') for s in found)} converged")
 print(f"mu from {mu.min():.4f} to {mu.max():.4f}, Q/P from {across.min():+.4f} to {across.max():+.4f}")
 
-figure, (upper, lower) = plt.subplots(2, 1, figsize=(6.4, 5), sharex=True, layout="constrained")
+figure, (upper, lower) = plt.subplots(2, 1, figsize=(5.6, 5), sharex=True, layout="constrained")
 upper.plot(np.degrees(angles), mu, "o-", ms=4)
 upper.set(ylabel="friction coefficient mu")
 lower.plot(np.degrees(angles), across, "s-", ms=4, color="C1")
