@@ -1,4 +1,4 @@
-"""A ball on a rough polymer, its mu with an error bar, in parts. Usage: rough_friction.py [ACCURACY] [PICTURE]"""
+"""A ball on a rough polymer: mu with an error bar, in parts. Usage: rough_friction.py [ACCURACY] [PICTURE]"""
 
 import sys
 
