@@ -27,7 +27,7 @@ lower.plot(np.degrees(angles), across, "s-", ms=4, color="C1")
 lower.axhline(0, color="k", lw=0.8)
 lower.set(
     xlabel="direction of sliding (degrees)",
-    ylabel="binormal force over load, Q / P",
+    ylabel="transverse force over load, Q / P",
     xticks=range(0, 361, 60),
 )
 figure.savefig(PICTURE, dpi=100)
