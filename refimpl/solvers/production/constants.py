@@ -66,7 +66,7 @@ PATIENCE = 30  # mixed updates in a row without halving it, before the solve has
 SETTLED = 0.01  # share of the first change that may be left: the updates reduce the rest
 SETTLING_LIMIT = 30  # rounds
 
-# What was tried for fewer transforms: work of friction over none, or of a change over none;
+# Trials for fewer transforms: work of friction over none, or of a change over none;
 # by scripts that are not kept. Smooth / rough; 40 random contacts to 512 per side (then 2.74 / 2.09):
 # - coupling up to 0.1 lags beside slopes: 2.64 / 2.01, kept
 # - and no update for a scaling to the load that the tolerance allows: 2.56 / 1.95, kept
