@@ -85,7 +85,7 @@ SETTLING_LIMIT = 30  # rounds
 # - tau's shares follow the pressure by the nearest 81 elements, between updates: friction 0.93 / 1.00,
 #   0.94 / 1.00, 0.95 at smooth 2048; 0.97 on random contacts; 40 lines
 # - the same, updates as rare as the feedback allows: 1.00 / 0.97, 1.13 / 1.03; one more of tau's states
-# - conjugacy by the last product instead of the last residual: frictionless 0.98 / 1.00, 1.00 / 1.00,
+# - conjugacy by the last product, not the last residual: frictionless 0.98 / 1.00, 1.00 / 1.00,
 #   random contacts 0.99
 # - directions of CG kept over updates, conjugate by the last product: friction 1.03 / 1.00, 1.02 / 1.09,
 #   random contacts 1.00
@@ -97,5 +97,5 @@ SETTLING_LIMIT = 30  # rounds
 # - two levels: long waves by six steps of CG on a grid 4 times coarser, the rest by the symbol:
 #   frictionless 1.49 / 1.01, 1.18 / 0.94, before the coarse grid's own work
 # - single-precision transforms to 1e-4, one convolution more to return: not built: a transform takes 0.43
-#   to 0.63 of the time, and applies to 54 / 55, 39 / 49 % of the work; transforms are 35 / 55, 30 / 61 %
-#   of the seconds: 0.9 at best, less with friction
+#   to 0.63 of the time, and applies to 54 / 55, 39 / 49 % of the work; transforms take 35 / 55, 30 / 61 %
+#   in seconds: 0.9 at best, less with friction
