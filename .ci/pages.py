@@ -9,11 +9,13 @@ from pathlib import Path
 import griffe
 from latex2mathml.converter import convert
 
+import refimpl
 from verification.cli import parser
 
 OUT = Path("out/pages")
 PACKAGES = ("refimpl", "appendix_a", *(f"verification/{x}" for x in ("framework", "solver_suite", "sweep")))
 SOURCE = re.compile(r"(?<=\]\()([\w./-]+\.(?:py|sh|cff))(?=\))")
+FIRST = ("solve", "Scene", "Solution", "Body", "Material", "Friction", "read_scene")  # what users call
 LAST = "---\nsearch: {boost: 5e-4}\n---\n\n"  # in search results, where titles count 1000 times
 NAMED = re.compile(r"^```(\w+) (\S+)$", flags=re.M)
 PACKAGE = f"{LAST}::: %s\n    options: {{heading_level: 1}}"
@@ -59,7 +61,11 @@ def pages() -> Iterator[tuple[str, str]]:
     packages = {".".join(start.parts): start for start in starts}
     for name, start in packages.items():
         modules = [f"::: {name}.{path.stem}" for path in sorted(start.glob("[!_]*.py"))]
-        yield f"api/{name}.md", "\n\n".join([PACKAGE % name, *modules])
+        members = f"\n      members: [{', '.join(dict.fromkeys([*FIRST, *refimpl.__all__]))}]"
+        package = PACKAGE.replace(
+            "{heading_level: 1}", f"\n      heading_level: 1{members * (name == 'refimpl')}"
+        )
+        yield f"api/{name}.md", "\n\n".join([package % name, *modules])
     listed = "".join(f"- [{name}]({name}.md)\n" for name in packages)
     yield "api/README.md", f"# Functions and classes\n\nSI units; fields: shape `(Mx, My)`.\n\n{listed}"
 
