@@ -132,7 +132,7 @@ def made_up(first: float, second: float, strain: float) -> HalfSpaceError:
 
 SOLVED: Any = SimpleNamespace(
     friction_coefficient=0.5, contact_area=2.0, max_pressure=7.0, approach=-1.0, normal_force=3.0,
-    problem=SimpleNamespace(datum=4.0), contact=None,
+    details=SimpleNamespace(problem=SimpleNamespace(datum=4.0)), contact=None,
 )  # fmt: skip
 
 
