@@ -61,7 +61,8 @@ def pages() -> Iterator[tuple[str, str]]:
     packages = {".".join(start.parts): start for start in starts}
     for name, start in packages.items():
         modules = [f"::: {name}.{path.stem}" for path in sorted(start.glob("[!_]*.py"))]
-        members = f"\n      group_by_category: false\n      members: [{', '.join(dict.fromkeys([*FIRST, *refimpl.__all__]))}]"
+        order = ", ".join(dict.fromkeys([*FIRST, *refimpl.__all__]))
+        members = f"\n      group_by_category: false\n      members: [{order}]"
         package = PACKAGE.replace(
             "{heading_level: 1}", f"\n      heading_level: 1{members * (name == 'refimpl')}"
         )
