@@ -25,7 +25,7 @@ OPTIONS: Options = {
 }
 SURFACE_FILE: tuple[str, str, Options] = (
     "a surface's file",
-    "its body is pressed by a rigid flat: the whole error of one body, none cancels",
+    "the surface is pressed by a rigid flat, so the error is that of one body without cancellation",
     {
         "--E": option("Young's modulus (Pa, default 200e9)", type=float),
         "--nu": option("Poisson's ratio (default 0.3)", type=float),

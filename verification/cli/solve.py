@@ -84,7 +84,7 @@ OPTIONS: Options = {
     "--max-memory": option("with --accuracy: at most so many GB in all", metavar="GB", type=gigabytes),
     "--accuracy": option("refine until the error bar is this share of mu", metavar="A", type=float),
     "--quantity": option(
-        f"what --accuracy is about: {', '.join(ACCURATE)} (default mu; without friction, A)",
+        f"quantity whose bar --accuracy limits: {', '.join(ACCURATE)} (default mu; without friction, A)",
         metavar="Q",
         choices=ACCURATE,
     ),
