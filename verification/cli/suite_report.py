@@ -24,6 +24,7 @@ class Judged:
     results : verdicts, those of the first checks where the run was interrupted
     only : patterns that chose the checks
     of_convergence : whether limits and orders were judged instead of the suite
+    identity : version and checksum of the solver, as far as they are known
     left : processes that the solver left behind
     ended : the signal or Ctrl-C that interrupted the run, or None
     seconds : duration
@@ -33,6 +34,7 @@ class Judged:
     results: tuple[Result, ...]
     only: tuple[str, ...]
     of_convergence: bool
+    identity: Mapping[str, str | None]
     left: tuple[str, ...]
     ended: BaseException | None
     seconds: float
@@ -91,8 +93,8 @@ def likely_faults(results: Iterable[Result], most: int = 4) -> list[str]:
     return [words for *_, words in sorted(ranked, key=lambda each: each[:2], reverse=True)[:most]]
 
 
-def document(judged: Judged, solver: Mapping[str, str | None], stated: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the JSON document; ``solver`` has its name, version and checksum, ``stated`` its abilities."""
+def document(judged: Judged, name: str, stated: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the JSON document; ``name`` is the solver's, ``stated`` its abilities."""
     from verification.solver_suite import diagnosis, suite
 
     return judged.run.document() | {
@@ -102,7 +104,9 @@ def document(judged: Judged, solver: Mapping[str, str | None], stated: Mapping[s
         else 0,
         "interrupted": judged.ended is not None,
         "solver": {
-            **solver,
+            "name": name,
+            "version": judged.identity.get("version"),
+            "checksum": judged.identity.get("checksum"),
             "abilities": dict(stated) or None,
             "not_applicable": {r.id: r.note for r in judged.results if r.status == "unavailable"},
             "not_judged": judged.missing,

@@ -23,7 +23,6 @@ from __future__ import annotations
 
 import json
 import os
-import shlex
 import shutil
 import subprocess
 import tempfile
@@ -37,6 +36,7 @@ import numpy as np
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
 from refimpl.operating_system import kill_group, words_of
+from verification.solver_suite.identity import Identity, of_command
 from verification.solver_suite.process import exit_text
 from verification.solver_suite.protocol import NUMBERS, Abilities, Answer, BadAnswer, ContactProblem, Coupling
 
@@ -88,9 +88,9 @@ class Command:
         return self
 
     @property
-    def version(self) -> str:
-        """The command itself: what it is, only its author knows."""
-        return shlex.join(self.words)
+    def identity(self) -> Identity:
+        """Checksum of its files; their version only its author knows."""
+        return of_command(self.words)
 
     def __call__(self, problem: ContactProblem) -> Answer:
         """Run the program on one problem. Raises `BadAnswer` for all but a readable claim of success."""
