@@ -11,7 +11,6 @@ import shutil
 import sys
 from collections.abc import Sequence
 from importlib.metadata import Distribution, distribution, packages_distributions
-from pathlib import Path
 
 from verification.framework.provenance import or_none
 
