@@ -22,7 +22,7 @@ import scipy
 from refimpl.errors import InputError
 from refimpl.grid import Array
 from refimpl.measured.reading import ARRAY, IMAGE, MAX_POINTS, UNITS, Overrides, RawHeights, checked
-from refimpl.measured.workarounds import NMS_UNIT, Source, rewritten
+from refimpl.measured.workarounds import NMS_UNIT, Source, refuse_changed, rewritten
 
 T = TypeVar("T")
 
@@ -50,6 +50,7 @@ def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
     failures = []
     for name in formats:
         try:
+            refuse_changed(path, name)
             return read_as(library, path, name, given, *rewritten(path, name))
         except InputError:
             raise
