@@ -36,6 +36,7 @@ import numpy as np
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
 from refimpl.operating_system import kill_group, words_of
+from reports.result_files import parsed
 from verification.solver_suite.identity import Identity, of_command
 from verification.solver_suite.process import exit_text
 from verification.solver_suite.protocol import NUMBERS, Abilities, Answer, BadAnswer, ContactProblem, Coupling
@@ -169,7 +170,7 @@ def read_answer(directory: Path) -> Answer:
         found = "both pressure.csv and" if table.exists() else "neither pressure.csv nor"
         raise BadAnswer(f"exit status 0, but {found} answer.npz")
     try:
-        said = json.loads(header.read_text(encoding="utf-8")) if header.exists() else {"converged": True}
+        said = parsed(header.read_text(encoding="utf-8")) if header.exists() else {"converged": True}
         converged, numbers = said["converged"], {name: said.get(name) for name in NUMBERS}
         pressure = _read_table(table) if table.exists() else _read_archive(archive)
     except (ValueError, KeyError, TypeError, AttributeError, OSError, EOFError, zipfile.BadZipFile) as broken:
@@ -196,9 +197,11 @@ def _read_table(path: Path) -> Array:
 
 def _number(cell: str, line: int, place: int) -> float:
     try:
-        return float(cell)
+        if cell.isascii() and "_" not in cell:
+            return float(cell)
     except ValueError:
-        raise ValueError(f"line {line}, number {place}: {cell[:40]!r} is no number") from None
+        pass
+    raise ValueError(f"line {line}, number {place}: {cell[:40]!r} is no number")
 
 
 def _read_archive(path: Path) -> Array:
