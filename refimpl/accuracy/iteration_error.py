@@ -22,19 +22,6 @@ CORRECTED = {
     "friction_force_corrected": "friction_force",
 }
 """Friction without tau on the mean excess of the contact edge, by the number that it is subtracted from."""
-NUMBERS = (
-    "friction_coefficient_corrected",
-    "friction_coefficient",
-    *AREAS,
-    "plastic_area",
-    "max_pressure",
-    "approach",
-    "normal_force",
-    "friction_force",
-    "friction_force_corrected",
-    "binormal_force",
-)
-"""The numbers that a solution reports, by their names there."""
 Parts = dict[str, float]
 Uncertainty = dict[str, Parts]
 

@@ -17,6 +17,7 @@ from scipy import stats
 import refimpl as rf
 from refimpl.accuracy.digits import LARGEST_SHARE
 from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.solution.quantities import error_bound
 from verification.coverage.class_scenes import (
     CLASSES,
     DECIMATED,
@@ -60,7 +61,7 @@ def single_grid_rows(one: rf.Scene, M: int, known: rf.Scene | None = None) -> li
     for name in NUMBERS:
         exact, bound = reference(finest, name)
         found = float(getattr(coarse, name))
-        lengths = coarse.error(name), abs(found - exact), bound
+        lengths = error_bound(coarse, name), abs(found - exact), bound
         shares = (length / abs(found) if length else 0.0 for length in lengths)
         row = dict(zip(("bar", "error", "reference_bound"), shares, strict=True))
         rows.append(row | {"number": name, "too_large": found > exact})
@@ -69,7 +70,7 @@ def single_grid_rows(one: rf.Scene, M: int, known: rf.Scene | None = None) -> li
 
 def reference(finest: rf.Solution, name: str) -> tuple[float, float]:
     """Return a number of the finest grid without its edges' mean excess, and a bound of what is left."""
-    features: GridFeatures = finest.features
+    features: GridFeatures = finest.details.features
     value = float(getattr(finest, name))
     bound = math.hypot(
         EDGE_SIZE_BOUND * features.edge,
@@ -82,8 +83,8 @@ def reference(finest: rf.Solution, name: str) -> tuple[float, float]:
     if name in ("friction_coefficient", "friction_coefficient_corrected"):
         return finest.friction_coefficient - features.dmu_dA * features.excess, features.dmu_dA * bound
     if name == "max_pressure" and not features.yields:
-        return features.peak.height, sum(finest.uncertainty[name].values())
-    return value, sum(finest.uncertainty[name].values())
+        return features.peak.height, error_bound(finest, name)
+    return value, error_bound(finest, name)
 
 
 def summary(rows: Iterable[dict[str, Any]]) -> dict[str, Any]:

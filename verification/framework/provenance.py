@@ -14,6 +14,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TypeVar
 
+import refimpl
+
 T = TypeVar("T")
 ROOT = Path(__file__).resolve().parents[2]
 DISTRIBUTION = "rough-friction"
@@ -32,7 +34,8 @@ def or_none(ask: Callable[[], T]) -> T | None:
 def versions() -> dict[str, str | None]:
     """Version of Python, of this package and of each dependency; None for one that is not found."""
     found: dict[str, str | None] = {"python": platform.python_version()}
-    for package in (DISTRIBUTION, *PACKAGES):
+    found[DISTRIBUTION] = refimpl.__version__
+    for package in PACKAGES:
         found[package] = or_none(partial(version, package))
     return found
 

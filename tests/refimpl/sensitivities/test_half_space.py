@@ -116,7 +116,7 @@ def test_parts_of_every_number(approach: float | None) -> None:
         {"normal_force": 0.8 * half, "friction_coefficient": 0.8 * half, "contact_area": 2 * half,
          "max_pressure": 0.8 * half}
     )  # fmt: skip
-    sunk = solution.approach + solution.problem.datum
+    sunk = solution.approach + solution.details.problem.datum
     assert found.second_order["approach"] == pytest.approx(0.4 * half * sunk)
     assert found.second_order["binormal_force"] == pytest.approx(0.8 * half * solution.friction_force)
 
