@@ -52,7 +52,7 @@ def _excess(levels: list[tuple[int, int]]) -> float:
     share = failed / posed
     if share in (0, 1):
         return 0.0
-    squared = sum((f - share * n) ** 2 / n for f, n in levels) / (share * (1 - share))
+    squared: float = sum((f - share * n) ** 2 / n for f, n in levels) / (share * (1 - share))
     return squared - (len(levels) - 1)
 
 

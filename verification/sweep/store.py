@@ -28,6 +28,8 @@ from verification.sweep.run import COORDINATES, OUTCOMES, Row, Run
 APPLICATION_ID = 0x52465357  # "RFSW": says whose file this is
 VERSION = 5
 COLUMNS = ("key", *COORDINATES, *OUTCOMES)
+_DATABASE = b"SQLite format 3\0"
+_JOURNAL = b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7"  # of a store whose creation was killed
 BUSY_SECONDS = 5.0  # for another program to end its transaction
 _ALL = (*COLUMNS, "inputs", "seconds", "checksum")
 _TABLE = f"""CREATE TABLE runs (
@@ -146,11 +148,21 @@ def _check_places(path: Path) -> None:
     for file in (store, lock, *kept):
         if os.path.exists(file) and not os.path.isfile(file):  # no error for long names
             raise _refusal(file, "a regular file")
-    others = [] if os.path.exists(store) else [file for file in kept if os.path.exists(file)]
+    head = _begin(store)
+    if head not in (b"", _DATABASE):
+        raise _refusal(store, "an SQLite file of 'sweep', or a new file")
+    others = [] if head else [file for file in kept if _begin(file) and not _begin(file).startswith(_JOURNAL)]
     if os.path.exists(lock) and os.path.getsize(lock):  # that of a sweep is empty
         others.append(lock)
     for file in others:
         raise _refusal(file, "no file beside the store that is none of its own")
+
+
+def _begin(path: Path) -> bytes:
+    """Return the first bytes of a file; none where there is none, or where it cannot be read."""
+    with suppress(OSError), open(path, "rb") as file:
+        return file.read(len(_DATABASE))
+    return b""
 
 
 def _connect(path: Path) -> sqlite3.Connection:
