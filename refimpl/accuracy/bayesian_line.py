@@ -21,7 +21,7 @@ from refimpl.grid import Array
 
 DEFAULT_ORDER = 1.5  # at which the scatter of a number falls, where nothing else is known
 _TWO_SIDED, _ONE_SIDED = 1.959964, 1.644854  # a normal distribution's 95 %
-_HALVINGS = 17  # of the interval of a bound: to 1e-5 of it
+_HALVINGS = 17  # halvings of the interval of a bound: to 1e-5 of it
 
 
 class Prior(NamedTuple):

@@ -21,7 +21,7 @@ MAX_REFINEMENT = 8  # next grid over the last: predictions from two coarse grids
 MAX_BLIND_REFINEMENT = 2  # ratio where the bar predicts nothing: longer than the number, or of short waves
 _SHORT_WAVES = 0.5  # waviness from which bars fall faster than they predict, as waves are resolved
 _MARGIN = 0.95  # share of the accuracy that a predicted bar may take
-_REST = 0.25  # of the parts that no grid reduces: what others may add, and neglected terms of the room left
+_REST = 0.25  # share of the parts that no grid reduces: what others may add, and neglected terms of the room left
 AIM = 1 + _REST  # bar over the parts that no grid reduces, at which a refinement that they end does end
 _ITERATION_SHARE = 1e-3  # share of the accuracy that unfinished iterations may take
 
@@ -67,7 +67,7 @@ def refine_until(
     On a slender domain all numbers of elements along the longer side are ``slenderness`` times larger.
 
     Parts that no grid reduces (`unfalling`) are summed first. Where they exceed the accuracy, grids are
-    refined until the rest is a quarter of them, and no finer than the data deserve; then the refinement ends
+    refined until the rest is a quarter of them, and no finer than the data allow; then the refinement ends
     with a reason. Neglected terms are put back by ``restored``, which solves the last grid again, once they
     take more than a quarter of what those parts leave. An accuracy that even the finest size cannot give ends
     the refinement. A grid that ``features_at`` refuses by `InputError` (memory, limits) is replaced by the
@@ -112,8 +112,8 @@ def refine_until(
 
 @dataclass(frozen=True)
 class DataShares:
-    """What the points of measured surfaces leave open: ``left`` share of the contact area by elements along
-    the longer side; ``finest`` elements that the data deserve."""
+    """Uncertainty by the points of measured surfaces: ``left`` share of the contact area by elements along
+    the longer side; ``finest`` elements that the data allow."""
 
     left: Callable[[int], float] = lambda M: 0.0
     finest: float = math.inf
@@ -159,7 +159,7 @@ _CUT_OFF = "the domain cuts the contact off: enlarge it"
 _STUCK = {
     "data": ("what lies between the points of the data", "a map with a finer pitch would"),
     "border": ("the contact beyond the border", "a larger domain would"),
-    "active set": ("tau's active set", "of the number, a larger accuracy is what can be had"),
+    "active set": ("tau's active set", "of the number, ask for a larger accuracy"),
 }
 """Parts that no grid reduces: what leaves them open, and what would help."""
 

@@ -15,7 +15,7 @@ from refimpl.model.problem import Problem
 _REST = 0.25  # N times tan^2: with 0.2, which is stated, the largest left by 24 finite-element contacts
 ALLOWED = 0.05  # stated error of N at a given approach
 _FIRST = 0.7  # N's error over the slope's tangent for nu = 0: 0.53 to 0.68 measured at 15 to 2.5 degrees
-_MARGIN = 1.5  # of that, in the bound: 79 of 80 random contacts stay below it, the other states 0.6 %
+_MARGIN = 1.5  # margin of the bound: 79 of 80 random contacts stay below it, the other states 0.6 %
 _AROUND = 32  # least margin of the window around the contact, elements
 
 

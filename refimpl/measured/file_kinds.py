@@ -30,7 +30,7 @@ _STL = 80, "<I", 50  # bytes of header, count of facets, bytes of each
 
 
 def kind_of(path: Path, head: bytes) -> str | None:
-    """What the file is and what to do, or None."""
+    """Return the kind of the file and the remedy, or None."""
     found = next((row[1:] for row in _MARKS if head.startswith(row[0])), None)
     if found is None and zipfile.is_zipfile(path):
         with zipfile.ZipFile(path) as archive:

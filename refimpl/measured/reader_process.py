@@ -25,7 +25,7 @@ from refimpl.operating_system import limit_process
 T = TypeVar("T")
 
 SECONDS = 240.0  # for a file, on a busy machine
-CPU_SECONDS, CPU_PER_BYTE = 8.0, 80e-9  # of processor time: text takes 45e-9 a byte, instruments' files less
+CPU_SECONDS, CPU_PER_BYTE = 8.0, 80e-9  # processor time: text takes 45e-9 a byte, instruments' files less
 MEMORY, MEMORY_PER_BYTE = 2**30, 8  # bytes: text takes 5, 16 million points from a packed file half of 2**30
 _CODE = "from refimpl.measured.reader_process import serve; serve()"
 _LOCK = threading.Lock()

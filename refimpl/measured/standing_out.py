@@ -16,7 +16,7 @@ from refimpl.measured.preparation import (
 
 FAR = 8.0  # spreads: of Gaussian distances one in 10^15 is farther
 _LEAST_LINES = 16  # lines from which their steps have a spread
-_ROUNDING = 1e-9  # of the rms height
+_ROUNDING = 1e-9  # share of the rms height
 
 
 def standing_out(z: Array, pixel: tuple[float, float]) -> tuple[str, ...]:

@@ -67,7 +67,8 @@ def unseen_share(z: Array, periodic: bool = False) -> float:
     """
     second = _interpolation_loss(z, periodic)
     few = min(z.shape) < 2 * _LEAST_POINTS  # every fourth point says nothing
-    fourth = 0.0 if few else _interpolation_loss(z[::2, ::2], periodic)
+    quarters = [z[i::2, j::2] for i in (0, 1) for j in (0, 1)]  # all, for a mirror image has the same share
+    fourth = 0.0 if few else float(np.mean([_interpolation_loss(quarter, periodic) for quarter in quarters]))
     return second * (min(1.0, second / fourth) if fourth > 0 else 1.0)
 
 
@@ -78,10 +79,11 @@ def _interpolation_loss(z: Array, periodic: bool) -> float:
         if len(values) < _LEAST_POINTS:
             missed, total = missed + _mean_square(values), total + _mean_square(values)
             continue
+        around = np.concatenate([values, values[: int(periodic)]])
+        total += _mean_square(np.diff(around, axis=0))
         values = np.concatenate([values[len(values) - 3 * periodic :], values, values[: 3 * periodic]])
         middle = (9 * (values[2:-4] + values[4:-2]) - values[:-6] - values[6:]) / 16
         missed += _mean_square(values[3:-3] - middle)
-        total += _mean_square(np.diff(values[3:-2], axis=0))
     return missed / total if total > 0 else 0.0
 
 

@@ -35,9 +35,9 @@ EPILOG = """examples:
   rough-friction sweep study.toml --scheduler tcp://127.0.0.1:8786 --csv study.csv
   rough-friction sweep study.toml --plot mu.svg --x load --by lower_rms
 
-A study is a TOML file, or the name of a shipped one. If the command is killed, run it again: it resumes,
-and finished runs are not repeated. Exit status 1 if a run failed or did not converge; the message of a
-failed run is printed, and the status of the others stands in their rows.
+A study is a TOML file, or the name of a shipped one. If the command is killed, run it again: it
+resumes, and finished runs are not repeated. Exit status 1 if a run failed or did not converge; the
+message of a failed run is printed, and the status of the others stands in their rows.
 
   scene = "table1-rough"      # a shipped scene, or a scene file relative to this file
   realisations = 75           # number per random roughness; seeds from first_seed (default 1;

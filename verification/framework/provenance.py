@@ -14,8 +14,6 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TypeVar
 
-import refimpl
-
 T = TypeVar("T")
 ROOT = Path(__file__).resolve().parents[2]
 DISTRIBUTION = "rough-friction"
@@ -33,8 +31,9 @@ def or_none(ask: Callable[[], T]) -> T | None:
 
 def versions() -> dict[str, str | None]:
     """Version of Python, of this package and of each dependency; None for one that is not found."""
-    found: dict[str, str | None] = {"python": platform.python_version()}
-    found[DISTRIBUTION] = refimpl.__version__
+    from refimpl import __version__  # here and not above: --help is quick
+
+    found: dict[str, str | None] = {"python": platform.python_version(), DISTRIBUTION: __version__}
     for package in PACKAGES:
         found[package] = or_none(partial(version, package))
     return found

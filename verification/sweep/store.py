@@ -29,7 +29,7 @@ APPLICATION_ID = 0x52465357  # "RFSW": says whose file this is
 VERSION = 5
 COLUMNS = ("key", *COORDINATES, *OUTCOMES)
 _DATABASE = b"SQLite format 3\0"
-_JOURNAL = b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7"  # of a store whose creation was killed
+_JOURNAL = b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7"  # first bytes of a journal, left where a store's creation was killed
 BUSY_SECONDS = 5.0  # for another program to end its transaction
 _ALL = (*COLUMNS, "inputs", "seconds", "checksum")
 _TABLE = f"""CREATE TABLE runs (
@@ -152,7 +152,7 @@ def _check_places(path: Path) -> None:
     if head not in (b"", _DATABASE):
         raise _refusal(store, "an SQLite file of 'sweep', or a new file")
     others = [] if head else [file for file in kept if _begin(file) and not _begin(file).startswith(_JOURNAL)]
-    if os.path.exists(lock) and os.path.getsize(lock):  # that of a sweep is empty
+    if os.path.exists(lock) and os.path.getsize(lock):  # a sweep's own lock is empty
         others.append(lock)
     for file in others:
         raise _refusal(file, "no file beside the store that is none of its own")

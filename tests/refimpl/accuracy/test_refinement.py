@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import partial
+from inspect import unwrap
 
 import numpy as np
 import pytest
@@ -182,7 +183,7 @@ def test_an_accuracy_that_a_lone_peak_rules_out_ends_with_a_note(monkeypatch: py
         side=50e-6,
     )
     # the module of the function in use, whatever has imported it again
-    used = rf.solve.__globals__["refined"].__globals__
+    used = unwrap(rf.solve).__globals__["refined"].__globals__
     monkeypatch.setitem(used, "refine_until", partial(refine_until, grid_sizes=(64,)))
     found = rf.solve(scene, accuracy=0.05, quantity="max_pressure")
     assert found.status is rf.Status.ACCURACY_NOT_REACHED

@@ -90,7 +90,8 @@ def test_surface_states_every_numbers_error_and_advises(tmp_path: Path) -> None:
     assert found["share_above_2_percent"] == 0.0
     assert found["advice"].startswith("keep the half-space")
     assert set(found["numbers"]) == {
-        "friction_coefficient", "contact_area", "max_pressure", "approach", "normal_force",
+        "friction_coefficient", "friction_coefficient_corrected", "contact_area", "max_pressure", "approach",
+        "normal_force",
     }  # fmt: skip
     for row in found["numbers"].values():
         assert abs(row["corrected"] - row["value"]) <= row["stated"]

@@ -29,7 +29,7 @@ def test_references_known_values() -> None:
     mu = 0.4 + 1e5 * (area - 3e-6)
     for yields, peak in ((False, 6), (True, 5)):
         bars = {name: {"a": 0.1, "b": 0.2} for name in numbers}
-        finest: Any = Made(**numbers, uncertainty=bars, features=Made(**own, yields=yields))
+        finest: Any = Made(**numbers, uncertainty=bars, details=Made(features=Made(**own, yields=yields)))
         values, doubts = zip(*(classes.reference(finest, name) for name in numbers), strict=True)
         assert values == pytest.approx((mu, mu, area, area, peak, 7), rel=1e-9)
         assert doubts == pytest.approx((1e5 * bound, 1e5 * bound, bound, bound, 0.3, 0.3))
@@ -95,7 +95,7 @@ def test_a_coarse_grid_that_is_right_by_chance_is_not_the_cheapest(monkeypatch: 
             friction_coefficient=1.0,
             contact_area_corrected=2e-6,
             cost=Made(point_logs=float(grid**2)),
-            problem=Made(grid=Made(shape=(48, grid))),
+            details=Made(problem=Made(grid=Made(shape=(48, grid)))),
             status=rf.Status.CONVERGED,
             converged=True,
         )

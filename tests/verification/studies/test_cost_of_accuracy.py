@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,6 +10,7 @@ import pytest
 import refimpl as rf
 from reports.result_files import committed, read_result
 from reports.studies.accuracy_costs import build
+from tests.changed import changed
 from verification.benchmarks import cost_of_accuracy
 from verification.benchmarks.cost_of_accuracy import LOWER, class_scene, costs, solve_grids
 from verification.cli import main
@@ -48,7 +48,7 @@ def test_an_unsettled_grid_meets_no_demand_and_an_unsettled_reference_judges_not
     def stagnates(at: int) -> None:
         def solved(scene: rf.Scene, grid: int) -> rf.Solution:
             status = {at: rf.Status.STAGNATED}.get(grid, rf.Status.CONVERGED)
-            return replace(solve(scene, grid), status=status)
+            return changed(solve(scene, grid), status=status)
 
         monkeypatch.setattr(cost_of_accuracy.rf, "solve", solved)
 
