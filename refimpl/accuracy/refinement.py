@@ -21,7 +21,7 @@ MAX_REFINEMENT = 8  # next grid over the last: predictions from two coarse grids
 MAX_BLIND_REFINEMENT = 2  # ratio where the bar predicts nothing: longer than the number, or of short waves
 _SHORT_WAVES = 0.5  # waviness from which bars fall faster than they predict, as waves are resolved
 _MARGIN = 0.95  # share of the accuracy that a predicted bar may take
-_REST = 0.25  # share of the parts that no grid reduces: what others may add, and neglected terms of the room left
+_REST = 0.25  # share: of the parts that no grid reduces, for others; of the room left, for neglected terms
 AIM = 1 + _REST  # bar over the parts that no grid reduces, at which a refinement that they end does end
 _ITERATION_SHARE = 1e-3  # share of the accuracy that unfinished iterations may take
 
