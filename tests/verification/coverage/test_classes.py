@@ -28,7 +28,8 @@ def test_references_known_values() -> None:
     area, bound = 3e-6 - 8e-9, math.hypot(0.12e-8, 0.5 * 4 * 1e-10)
     mu = 0.4 + 1e5 * (area - 3e-6)
     for yields, peak in ((False, 6), (True, 5)):
-        finest: Any = Made(**numbers, error=lambda name: 0.3, details=Made(features=Made(**own, yields=yields)))
+        details = Made(features=Made(**own, yields=yields))
+        finest: Any = Made(**numbers, error=lambda name: 0.3, details=details)
         values, doubts = zip(*(classes.reference(finest, name) for name in numbers), strict=True)
         assert values == pytest.approx((mu, mu, area, area, peak, 7), rel=1e-9)
         assert doubts == pytest.approx((1e5 * bound, 1e5 * bound, bound, bound, 0.3, 0.3))
