@@ -46,7 +46,6 @@ def reported_numbers(problem: Problem, state: State) -> dict[str, float]:
     return {
         "friction_coefficient": state.friction_coefficient,
         "contact_area": state.contact_area,
-        "contact_area_corrected": state.contact_area_corrected,
         "plastic_area": state.plastic_area,
         "max_pressure": state.max_pressure,
         "approach": state.approach - problem.datum,

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD
 from refimpl.driver.solve import solve
 from refimpl.grid import Array
 from refimpl.scene.parameters import parameters, with_parameter
@@ -134,7 +133,7 @@ def _response(
     inputs, solves = _inputs(scene, solution, tolerances)
     by_tau, by_beta = friction_slopes(scene, solution)
     excess = solution.features.excess
-    factor = COVERAGE * EDGE_SIZE_SPREAD / EDGE_SIZE * abs(excess)
+    factor = COVERAGE * EXCESS_SPREAD * abs(excess)
     slopes = (by_tau, by_beta, *(_log_slope(scene, solution, name) for name in further))
     parts = dict(solution.uncertainty["friction_coefficient_corrected"])
     edge = parts.pop("active set", 0.0)

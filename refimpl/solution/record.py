@@ -89,7 +89,7 @@ class Parts:
     friction_coefficient_corrected: float = _from("features.numbers")
     friction_force_corrected: float = _from("features.numbers")
     contact_area: float = _from("evidence.numbers")
-    contact_area_corrected: float = _from("evidence.numbers")
+    contact_area_corrected: float = _from("features.numbers")
     plastic_area: float = _from("evidence.numbers")
     max_pressure: float = _from("evidence.numbers")
 
