@@ -33,17 +33,19 @@ def area_counts(result: GridFeatures) -> Array:
 
     Faces of ordinary edges; those towards which pressures do not fall, beyond which gaps do not rise, and
     both; elements amid the contact that are undecided, and single ones: as symmetric ones come in and out
-    together. Then straight edges, squared, and what uneven faces are of them.
+    together. Then straight edges, squared, what uneven faces are of them, and what they are of narrow strips; and all faces towards which
+    pressures do not fall, squared, as they are of one rim.
     """
     dA, area, together = result.grid.element_area, result.numbers["contact_area"], result.symmetry_multiplicity
     faces = np.reshape(result.faces, KINDS).sum(axis=0)
     falling, rising = faces[:_RISING].sum(axis=0), faces[_RISING:].sum(axis=0)
     kinds = [side[part].sum() for part in (slice(_NARROW), slice(_NARROW, None)) for side in (falling, rising)]
-    alone = area / dA * single_element_share(result.edge, area) ** _ALONE
+    single = single_element_share(result.edge, area)
+    alone = area / dA * single**_ALONE
     straight = result.straight.squares * max(min(together, result.straight.runs), 1)
     uneven = straight * sum(kinds[1:]) / max(sum(kinds), 1.0)
     counts = np.array([*kinds, result.undecided / dA, alone])
-    return np.concatenate([counts * together, [straight, uneven]])
+    return np.concatenate([counts * together, [straight, uneven, straight * single, rising.sum() ** 2]])
 
 
 def area_scatter(result: GridFeatures) -> float:

@@ -26,17 +26,16 @@ from verification.framework.provenance import provenance
 
 REFERENCE = 384  # elements along the longer side
 WAVES = "short waves"  # part of an error bar
-JUDGED_NUMBERS = (
-    "friction_coefficient_corrected",
+FITTED = (
     "friction_coefficient",
+    "friction_force",
     "contact_area",
-    "contact_area_corrected",
     "plastic_area",
-    "max_pressure",
     "approach",
-    "friction_force_corrected",
+    "normal_force",
     "binormal_force",
 )
+"""Numbers of the features that are kept: those that errors are fitted of, and corrected ones are made of."""
 
 
 @dataclass(frozen=True)
@@ -112,8 +111,14 @@ def solved(path: Path) -> list[Solved]:
 
 
 def pack(scenes: Iterable[Solved], path: Path) -> None:
-    """Write scenes as the result file that is committed: features in columns, as short as errors allow."""
-    rows = [(one.kind, one.seed, one.exact, [_plain(grid) for grid in one.grids]) for one in scenes]
+    """Write scenes as the result file that is committed: features in columns, as short as errors allow.
+
+    Of the grids every second one is kept, and the reference.
+    """
+    rows = [
+        (one.kind, one.seed, one.exact, [_plain(grid) for grid in (*one.grids[one.seed % 2 : -1 : 2], one.grids[-1])])
+        for one in scenes
+    ]
     names = list(rows[0][3][0])
     columns = {name: [grid[name] for *_, grids in rows for grid in grids] for name in names}
     index = [[kind, seed, len(grids), dict(exact)] for kind, seed, exact, grids in rows]
@@ -133,7 +138,7 @@ def unpacked(path: Path) -> list[Solved]:
     ]
 
 
-_DIGITS = {"numbers": 7, "first_contact": 6, "peak": 6}  # significant ones of features whose differences count
+_DIGITS = {"numbers": 6, "first_contact": 5, "peak": 5, "faces": 5}  # significant ones of features whose differences count
 
 
 def _plain(grid: GridFeatures) -> dict[str, Any]:
@@ -141,13 +146,10 @@ def _plain(grid: GridFeatures) -> dict[str, Any]:
     record = asdict(grid)
     record["highest_areas"] = ()
     record["faces"] = [[k, round(n, 2)] for k, n in enumerate(grid.faces) if n >= 0.005]
-    record["parts"] = {
-        name: {"own": sum(parts.values()) - parts.get(WAVES, 0.0)}
-        | ({WAVES: parts[WAVES]} if parts.get(WAVES) else {})
-        for name, parts in grid.parts.items()
-        if name in JUDGED_NUMBERS
-    }
-    return {name: _short(value, _DIGITS.get(name, 4)) for name, value in record.items()}
+    record["numbers"] = {name: grid.numbers[name] for name in FITTED}
+    waves = grid.parts.get("contact_area", {}).get(WAVES, 0.0)
+    record["parts"] = {"contact_area": {WAVES: waves}} if waves else {}
+    return {name: _short(value, _DIGITS.get(name, 3)) for name, value in record.items()}
 
 
 def _restored(record: dict[str, Any]) -> GridFeatures:

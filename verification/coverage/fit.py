@@ -33,7 +33,7 @@ from verification.framework.text_table import columns
 
 CONSTANTS = Path("refimpl/data/error_bars.json")
 FEATURES = Path("reports/results/error_bar_features.json.gz")  # of the building scenes
-JUDGED = Path("build/error_bar_judged.json.gz")  # of scenes to judge
+BUILT, JUDGED = Path("build/error_bars_built.jsonl"), Path("build/error_bars_judged.jsonl")  # runs, resumable
 JUDGEMENT = Path("reports/results/coverage_corrected.json.gz")
 BUILDING_SEED, JUDGING_SEED = 5_000_000, 6_000_000
 EARLIER = "set before this program, by scenes of `verification.coverage.scenes`; no building scene gives it"
@@ -48,7 +48,7 @@ Sample = Callable[[GridFeatures, GridFeatures, Solved], Row | None]
 def _area_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row | None:
     """Excess of the counted area, in elements; none where short waves or the hardness decide."""
     dA, ratio = grid.grid.element_area, reference.grid.element_area / grid.grid.element_area
-    if missed(grid) > _LEAST_WAVES or grid.unfilled is not None:
+    if missed(grid) > _LEAST_WAVES or grid.yields:
         return None
     terms, counts, area = grid.excess_terms, area_counts(grid), one.exact.get("contact_area")
     if area is None:
@@ -237,19 +237,18 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--judge", action="store_true", help="judge fresh scenes, print the table")
     parser.add_argument("--lines", type=Path, help="solved scenes, a JSON line each, of a run to be gone on")
     chosen = parser.parse_args(arguments)
-    features = JUDGED if chosen.judge else FEATURES
-    lines = chosen.lines or features.with_suffix(".jsonl")
+    lines = chosen.lines or (JUDGED if chosen.judge else BUILT)
     if chosen.solve:
         first = chosen.first or (JUDGING_SEED if chosen.judge else BUILDING_SEED)
         solve_all(lines, range(first, first + chosen.solve), chosen.kind or tuple(CLASSES))
-    if lines.exists():
-        pack(solved(lines), features)
-    scenes = unpacked(features)
     if chosen.judge:
-        judged = {"provenance": provenance(), **classes.document(scenes)}
+        judged = {"provenance": provenance(), **classes.document(solved(lines))}
         write_result(jsonable(judged), JUDGEMENT)
         print(columns(classes.lines(judged["table"]), indent=""))
         return
+    if lines.exists():
+        pack(solved(lines), FEATURES)
+    scenes = unpacked(FEATURES)
     written = document(scenes, json.loads(CONSTANTS.read_text(encoding="utf-8"))["constants"])
     CONSTANTS.write_text(json.dumps(jsonable(written), indent=1) + "\n", encoding="utf-8")
     print(columns(summary(written["constants"]), indent=""))
