@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import scipy
 
 from refimpl.accuracy.contact_edge import GAPS, KINDS, PRESSURES
 from refimpl.accuracy.discretisation_error import approach_sizes, rest_sizes
@@ -154,6 +155,7 @@ def area_constants(scenes: Sequence[Solved]) -> dict[str, Constant]:
     first = fit(errors, means, squares, freedoms=[4.0], prior=smoothness(), start=0.2)
     excess = (means @ first.mean)[:, None] ** 2
     found = fit(errors, means, np.hstack([squares, excess]), freedoms=FREEDOMS, prior=smoothness(), start=0.1)
+    normal = scipy.special.stdtrit(found.freedom, 0.975) / scipy.special.ndtri(0.975)  # of the same 95 %
     count = int(np.prod(KINDS))
     faces, face_errors = (values[:count].reshape(KINDS) for values in (found.mean, found.mean_error))
     return {
@@ -161,7 +163,7 @@ def area_constants(scenes: Sequence[Solved]) -> dict[str, Constant]:
         "straight_excess": constant(found.mean[count], found.mean_error[count], found),
         "border_excess": constant(found.mean[count + 1], found.mean_error[count + 1], found),
         "area_scatter": constant(found.scale[:-1], found.scale_error[:-1], found),
-        "excess_spread": constant(found.scale[-1], found.scale_error[-1], found),
+        "excess_spread": constant(normal * found.scale[-1], normal * found.scale_error[-1], found),
         "area_freedom": constant(found.freedom, None, found),
     }
 
