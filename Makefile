@@ -7,7 +7,7 @@ OUT := out
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: report results test lint setup clean nightly mutation site
+.PHONY: report results test lint setup clean nightly mutation site licences
 
 report: $(READY)
 	@mkdir -p $(OUT)
@@ -16,12 +16,12 @@ report: $(READY)
 	$(BIN)/rough-friction report --results $(OUT)/results.json --output $(OUT)/report; \
 	exit $$status
 
-# The committed results: all cases in one run, cut into their files, and the commands of the files that are not cases.
+# The committed results of cases: the command of each file, as its row in reports/results/README.md states it. The
+# commands of the other files, which are no cases, stand there too.
 results: $(READY)
-	@mkdir -p $(OUT)
-	@rm -f $(OUT)/full.json; status=0; \
-	$(BIN)/rough-friction verify --tier full --jobs 1 --json $(OUT)/full.json || status=$$?; \
-	$(BIN)/python -m verification.cli.results $(OUT)/full.json && exit $$status
+	sed -n 's/^| `\([a-z_0-9]*\).json` | `\(rough-friction verify [^`]*\)FILE`.*/\2reports\/results\/\1.json.gz/p' \
+		reports/results/README.md | PATH="$(CURDIR)/$(BIN):$$PATH" xargs -d '\n' -P 2 -I {} sh -c '{}'
+	$(BIN)/python -m reports.results_page
 
 test: lint
 	$(BIN)/python -m pytest -n 2 --dist worksteal
@@ -31,13 +31,11 @@ lint: $(READY)
 	$(BIN)/mypy
 
 # The tests that `make test` leaves out. Then hypothesis examples of the solver invariants: other ones every day,
-# resumed when interrupted. Then the table of single faults in the production solver: its comparison with
-# refimpl/plain.py must notice each.
+# resumed when interrupted.
 nightly: $(READY)
 	@mkdir -p $(OUT)
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m nightly
 	$(BIN)/python -m verification.properties --examples 10000 --seed $$(date +%Y%m%d) --json $(OUT)/hypothesis.json
-	$(BIN)/python -m tests.faults.run --json $(OUT)/faults.json
 
 # Small faults that the tests must notice, N of them drawn at random, in a copy of the committed tree.
 N := 50
@@ -60,6 +58,11 @@ site: $(READY)
 	$(BIN)/rough-friction report --results reports/results/quick.json.gz --output $(OUT)/pages
 	$(BIN)/python .ci/pages.py
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build
+
+# Every installed package with its version and licence.
+licences: $(READY)
+	$(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt pip-licenses
+	$(BIN)/pip-licenses --from=mixed --order=license
 
 setup: $(READY)
 

@@ -16,13 +16,16 @@ flat = rf.Body(rf.Material(E=2e6, nu=0.3), rf.Flat())
 scene = rf.Scene(ball, flat, rf.Friction(beta=0.6), load=0.12, side=5e-3, sliding_direction=phi)
 turned, s = rf.solve(scene, GRID), rf.solve(replace(scene, sliding_direction=0.0), GRID)
 x = (s.grid.x - 2.5e-3) * 1e3
-ahead, front = np.average(x, weights=s.pressure.sum(axis=1)), s.theta_x[s.contact & (x[:, None] > 0)].max()
+ahead, front = (
+    np.average(x, weights=s.pressure.sum(axis=1)),
+    s.slopes.theta_x[s.contact & (x[:, None] > 0)].max(),
+)
 print(f"centre of pressure at x = {ahead:+.3f} mm, theta_x in front up to {front:+.3f}")
 figure, (top, side) = plt.subplots(1, 2, figsize=(9.2, 3.6), layout="constrained", width_ratios=(1, 1.5))
 top.contourf(x, x, turned.pressure.T, 5, cmap="Greys", vmax=3 * turned.max_pressure)
 top.set(xlabel="x (mm)", ylabel="y (mm)", aspect="equal", xlim=(-2, 2), ylim=(-2, 2), title="from above")
-side.plot(x, s.surface_upper[:, GRID // 2] * 1e6, color=ORANGE, label="upper body: heights upwards")
-side.plot(x, s.surface_lower[:, GRID // 2] * 1e6, color=BLUE, label="lower body: heights upwards")
+side.plot(x, s.surfaces[1][:, GRID // 2] * 1e6, color=ORANGE, label="upper body: heights upwards")
+side.plot(x, s.surfaces[0][:, GRID // 2] * 1e6, color=BLUE, label="lower body: heights upwards")
 side.set(xlabel="x (mm)", ylabel="z (um)", xlim=(-1.8, 1.8), ylim=(-290, 380), title="section, phi = 0")
 for axes, start, stop, colour, at, text in (
     (top, (0, 0), (1.3, 0.75), ORANGE, (0.6, 0.95), "sliding"),

@@ -12,10 +12,9 @@ PICTURE = sys.argv[2] if len(sys.argv) > 2 else "rough_friction.png"
 scene = rf.read_scene("table1-rough")
 found = rf.solve(scene, accuracy=ACCURACY)
 mu, area = found.friction_coefficient_corrected, found.contact_area_corrected
-bars = {name: sum(parts.values()) for name, parts in found.uncertainty.items()}
 print(f"{found.status.value} on {found.grid}")
-print(f"mu = {mu:.4f} +- {bars['friction_coefficient_corrected']:.4f}")
-print(f"A  = {area * 1e6:.4f} +- {bars['contact_area_corrected'] * 1e6:.4f} mm^2")
+print(f"mu = {mu:.4f} +- {found.error('friction_coefficient_corrected'):.4f}")
+print(f"A  = {area * 1e6:.4f} +- {found.error('contact_area_corrected') * 1e6:.4f} mm^2")
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.9), layout="constrained", width_ratios=(1.2, 1))
 half = 0.5e3 * scene.side

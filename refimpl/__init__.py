@@ -10,7 +10,7 @@
 """
 
 from refimpl.driver.solve import solve
-from refimpl.errors import InputError
+from refimpl.errors import Error, InputError, NotConverged
 from refimpl.grid import Grid
 from refimpl.measured import Inspection, MeasuredSurface, inspect_surface
 from refimpl.model.friction import Friction, FrictionLaw
@@ -31,9 +31,12 @@ from refimpl.surfaces import (
     SurfaceWarning,
 )
 
+__version__ = "0.1.0"  # the one place that states it
+
 __all__ = [
     "ArraySurface",
     "Body",
+    "Error",
     "Flat",
     "Friction",
     "FrictionLaw",
@@ -43,6 +46,7 @@ __all__ = [
     "Inspection",
     "Material",
     "MeasuredSurface",
+    "NotConverged",
     "Scene",
     "SelfAffineRoughness",
     "Sensitivity",

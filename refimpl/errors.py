@@ -1,4 +1,4 @@
-"""The one exception that people's input can raise."""
+"""Exceptions with one base: of input that is refused, and of solves that find no answer."""
 
 from __future__ import annotations
 
@@ -13,7 +13,15 @@ from typing import Any
 LEAST, MOST = 1e-30, 1e30  # lengths, moduli and loads in SI: their squares and products are doubles
 
 
-class InputError(ValueError):
+class Error(Exception):
+    """Base of what `refimpl` raises."""
+
+
+class NotConverged(Error, ArithmeticError):
+    """A solve, or what needs one, did not converge."""
+
+
+class InputError(Error, ValueError):
     """Input refused at the border: names the field, the value and what is allowed.
 
     >>> raise InputError("load", -1.0, "a positive force in N")

@@ -39,7 +39,6 @@ EXCEPTIONS: dict[tuple[str, str], str] = {
 """Reasons, by file and matched text."""
 
 KEPT = {
-    "obliqueness": "former name of Slopes.cosine_product, for one release",
     "reports/studies/extremes.py": "named after the committed result that it shows",
     "extreme_scene": "a state at an end of its axis",
     "Extreme": "a state at an end of its axis",

@@ -6,6 +6,7 @@ import math
 
 LARGEST_SHARE = 0.5  # largest usable bar over the value: beyond, the number is known to a factor of 3 at best
 MOST_DIGITS = 6  # significant digits of a number whose bar is shorter than they show, or zero
+UNKNOWN_DIGITS = 3  # of a number whose bar is not known
 _FIXED = 1e-4, 1e6  # magnitudes that are printed without an exponent
 
 
@@ -18,39 +19,49 @@ def usable(error: float, scale: float) -> bool:
     return error <= LARGEST_SHARE * abs(scale)
 
 
-def digits_of(value: float, error: float) -> str:
+def digits_of(value: float, error: float | None) -> str:
     """Return a number rounded to the last digit of its bar: at most six digits, two if the bar is longer.
+
+    Three digits without a bar that is known.
 
     >>> digits_of(0.112913, 0.00213), digits_of(1234.4, 30.0), digits_of(0.0996, 0.001), digits_of(2.0, 0.0)
     ('0.113', '1230', '0.0996', '2')
     >>> digits_of(0.112913, 0.2), digits_of(222802.0, 3e7), digits_of(0.1, math.inf), digits_of(math.nan, 1.0)
     ('0.11', '220000', '0.10', 'n/a')
+    >>> digits_of(4.5671, None)
+    '4.57'
     """
     if not math.isfinite(value):
         return "n/a"
-    if not error > 0 or value == 0:
+    if error is None and value:
+        return _printed(value, _leading(value) - UNKNOWN_DIGITS + 1)
+    if not error or value == 0:
         return f"{value:.{MOST_DIGITS}g}"
     if not error < abs(value):
         return _printed(value, _leading(value) - 1)
     return _printed(value, max(_last_place(error), _leading(value) - MOST_DIGITS + 1))
 
 
-def bar_of(error: float) -> str:
+def bar_of(error: float | None) -> str:
     """Return a bar with one digit, two where the first is a 1; nothing for a number that is exact.
+
+    "-" for a bar that is not known.
 
     >>> bar_of(0.00213), bar_of(0.00136), bar_of(0.0096), bar_of(3e7), bar_of(0.0)
     ('+- 0.002', '+- 0.0014', '+- 0.010', '+- 3e+07', '')
     >>> bar_of(math.inf)
     'unbounded'
     """
+    if error is None:
+        return "-"
     if math.isinf(error):
         return "unbounded"
     return f"+- {_printed(error, _last_place(error))}" if error > 0 else ""
 
 
-def verdict(error: float, scale: float) -> str:
+def verdict(error: float | None, scale: float) -> str:
     """Return "(not usable)" for a bar above half of the number's magnitude, nothing otherwise."""
-    return "" if usable(error, scale) else "(not usable)"
+    return "" if error is None or usable(error, scale) else "(not usable)"
 
 
 def _leading(value: float) -> int:

@@ -18,23 +18,11 @@ from refimpl.model.problem import Problem
 
 AREAS = "contact_area", "contact_area_corrected"  # both depend on the same elements
 CORRECTED = {
+    "contact_area_corrected": "contact_area",
     "friction_coefficient_corrected": "friction_coefficient",
     "friction_force_corrected": "friction_force",
 }
-"""Friction without tau on the mean excess of the contact edge, by the number that it is subtracted from."""
-NUMBERS = (
-    "friction_coefficient_corrected",
-    "friction_coefficient",
-    *AREAS,
-    "plastic_area",
-    "max_pressure",
-    "approach",
-    "normal_force",
-    "friction_force",
-    "friction_force_corrected",
-    "binormal_force",
-)
-"""The numbers that a solution reports, by their names there."""
+"""Numbers without the mean excess of the contact edge, by the number that it is subtracted from."""
 Parts = dict[str, float]
 Uncertainty = dict[str, Parts]
 

@@ -9,21 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Literal, get_args
 
 from refimpl.accuracy.discretisation_error import discretisation, estimates
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.iteration_error import Uncertainty, merged
-from refimpl.errors import InputError, require_number, require_one_of
-
-Quantity = Literal[
-    "friction_coefficient_corrected",
-    "friction_coefficient",
-    "contact_area",
-    "contact_area_corrected",
-    "max_pressure",
-]
-QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
+from refimpl.errors import InputError, NotConverged, require_number
 
 FIRST_GRIDS = (32, 64)  # elements along the longer side
 GRID_SIZES = (*(quarter * 2**k for k in range(4, 10) for quarter in (5, 6, 7, 8)), 4096)
@@ -39,11 +29,6 @@ def check_accuracy(accuracy: float) -> None:
     require_number("accuracy", accuracy, "a relative accuracy between 0 and 1", above=0, below=1)
 
 
-def check_quantity(quantity: str) -> None:
-    """Raise `InputError` unless the quantity is one that an accuracy applies to."""
-    require_one_of("quantity", quantity, QUANTITIES)
-
-
 def tolerance_for(accuracy: float) -> float:
     """Return the certificate tolerance for an accuracy: a small share of it, and at least 1e-8.
 
@@ -53,7 +38,7 @@ def tolerance_for(accuracy: float) -> float:
     return min(1e-5, max(1e-8, _ITERATION_SHARE * accuracy))
 
 
-class Unfinished(ArithmeticError):
+class Unfinished(NotConverged):
     """A grid on which the solve does not converge."""
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from refimpl.accuracy.refinement import Quantity, check_accuracy, check_quantity, tolerance_for
+from refimpl.accuracy.refinement import check_accuracy, tolerance_for
 from refimpl.driver.limits import Limits
 from refimpl.errors import InputError, keep_doubles, require_number, require_one_of
 from refimpl.grid import Grid
@@ -13,6 +13,7 @@ from refimpl.model.problem import Terms
 from refimpl.planning.plan import DECISION_GRID, METHODS, Method, Plan, make_plan, memory_of
 from refimpl.scene.discretise import Discretiser
 from refimpl.scene.scene import Scene
+from refimpl.solution.quantities import check_target
 from refimpl.solution.solution import Solution
 from refimpl.solvers.paper import PAPER_TOLERANCE
 
@@ -31,7 +32,7 @@ class Options:
     grid: int | tuple[int, int] | None = None
     method: Method = "fft"
     accuracy: float | None = None
-    quantity: Quantity | None = None
+    quantity: str | None = None
     approach: float | None = None
     requested: Terms = field(default_factory=Terms)
     tolerance: float | None = None
@@ -47,7 +48,7 @@ class Options:
         self._check_strains()
         self._check_method()
         self._check_plastic()
-        check_quantity(self.target_quantity)
+        check_target(self.target_quantity)
         if self.accuracy is not None:
             check_accuracy(self.accuracy)
         require_number("tolerance", self.residual_tolerance, "a number between 0 and 1", above=0, below=1)
@@ -118,7 +119,7 @@ class Options:
             found = f"{start.grid} elements on {_by(start.grid)} m"
             allowed = f"a solution on at most {grid} elements on {_by(grid)} m"
             raise InputError("start", found, allowed)
-        if not start.certified:
+        if not start.details.certified:
             raise InputError("start", start.status.value, "a solution whose certificate holds")
 
     @property
@@ -129,7 +130,7 @@ class Options:
         return self.scene.refined(DECISION_GRID * self.scene.slenderness)
 
     @property
-    def target_quantity(self) -> Quantity:
+    def target_quantity(self) -> str:
         """The quantity that the accuracy applies to."""
         if self.quantity is not None:
             return self.quantity

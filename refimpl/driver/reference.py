@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from refimpl import plain
-from refimpl.errors import InputError
+from refimpl.errors import InputError, NotConverged
 from refimpl.grid import Window
 from refimpl.model.certificate import State, certify
 from refimpl.model.elasticity import Elasticity
@@ -24,7 +24,7 @@ def solve_reference(problem: Problem) -> State:
     """Return the plain solution as a certified state.
 
     Statuses are `CONVERGED`, `CYCLED` and `ITERATION_LIMIT`, and concern the loops only. Raises `InputError`
-    for a friction law other than `Friction`, and `ArithmeticError` where the problem has no solution.
+    for a friction law other than `Friction`, and `NotConverged` where the problem has no solution.
     """
     law, shape, pair = problem.friction, problem.gap.shape, problem.pair
     if not isinstance(law, Friction):
@@ -52,7 +52,7 @@ def solve_reference(problem: Problem) -> State:
             facets=problem.terms.slope_correction,
         )
     except np.linalg.LinAlgError:
-        raise ArithmeticError("no approach balances the load") from None
+        raise NotConverged("no approach balances the load") from None
     excluded = (found.pressure > 0) & ~found.active
     operator = whole_grid_influence(problem.grid, problem.direction, Window(0, shape[0], 0, shape[1]))
     slopes = Slopes(*found.tangents) if problem.terms.oblique else Slopes.flat(shape)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from refimpl.accuracy.refinement import Quantity
 from refimpl.driver.limits import Limits
 from refimpl.driver.on_grid import Progress, initial_guess, solve_on_grid
 from refimpl.driver.options import Options
@@ -21,7 +20,7 @@ def solve(
     *,
     method: Method = "fft",
     accuracy: float | None = None,
-    quantity: Quantity | None = None,
+    quantity: str | None = None,
     approach: float | None = None,
     oblique: bool | None = None,
     slope_correction: bool = False,
@@ -100,6 +99,6 @@ def _solved(options: Options, progress: Progress | None) -> Solution:
         return refined(options, plan, discretiser, progress)
     guess = None
     if start is not None:
-        guess = initial_guess(start.problem, start.pressure, start.clearance, start.approach)
+        guess = initial_guess(start.details.problem, start.pressure, start.details.clearance, start.approach)
     solved = solve_on_grid(plan, discretiser, options.residual_tolerance, progress, guess)
     return assemble(solved)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from refimpl.errors import InputError
+from refimpl.errors import Error
 from refimpl.grid import Array
 from refimpl.identification.data_table import Row
 from refimpl.identification.ensemble import draws, mean_response
@@ -39,7 +39,7 @@ def trial_responses(
         load = factor * (low if factor < 1 else high)
         try:
             response = mean_response(draws(forward, replace(scene, load=load), theta, realisations))
-        except (InputError, ArithmeticError):
+        except Error:
             continue  # a load beyond the hardness, or one whose solve does not converge
         if response.border <= MAX_BORDER:
             found.append((load, response))

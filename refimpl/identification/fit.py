@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 from scipy.stats import chi2
 
+from refimpl.errors import NotConverged
 from refimpl.grid import Array
 from refimpl.identification.data_table import Row
 from refimpl.identification.ensemble import Scatter, draws, mean_response, scatter, working_variances
@@ -101,11 +102,11 @@ def fit_rows(
 
 
 def _check_slopes(responses: Sequence[Response], further: Sequence[str], theta: Array) -> None:
-    """Raise `ArithmeticError` where mu does not depend on a further parameter at any load."""
+    """Raise `NotConverged` where mu does not depend on a further parameter at any load."""
     for j, name in enumerate(further, start=BOUNDED):
         if not any(response.slopes[j] for response in responses):
             value = math.exp(theta[j])
-            raise ArithmeticError(
+            raise NotConverged(
                 f"mu depends on {name} at no measured load, near {value:.4g}: the data do not determine it, "
                 "or the scene's value is a bad first guess"
             )

@@ -10,11 +10,13 @@ from typing import Any
 import numpy as np
 
 from refimpl.driver.solve import solve
+from refimpl.errors import NotConverged
 from refimpl.grid import Array
 from refimpl.scene.parameters import parameters, with_parameter
 from refimpl.scene.scene import Scene
 from refimpl.sensitivities.difference_quotients import difference_quotients
 from refimpl.sensitivities.sensitivity import friction_slopes, grid_sensitivity
+from refimpl.solution.quantities import error_bound
 from refimpl.solution.solution import Solution
 
 COVERAGE = 1.959963984540054  # half-width of 95 % over the standard uncertainty, normal distribution
@@ -85,7 +87,7 @@ class Forward:
     def respond(self, scene: Scene, theta: Array, tolerances: Mapping[str, float] | None = None) -> Response:
         """Return the response of a scene at parameters ``(tau, beta, ln p, ...)``.
 
-        Raises `InputError` as `refimpl.solve` does, `ArithmeticError` where the solve does not converge.
+        Raises `InputError` as `refimpl.solve` does, `NotConverged` where the solve does not converge.
         """
         if self._report is not None:
             self._report(f"solve {self.solves + 1}: {scene.load:.4g} N")
@@ -126,17 +128,18 @@ def _response(
     solution = solve(scene, grid)
     if not solution.converged or not solution.contact.any():
         share = 100 * float(solution.contact.mean())
-        raise ArithmeticError(
+        raise NotConverged(
             f"the solve at {scene.load:.4g} N ended as {solution.status.value} with {share:.3g} % of the "
             "domain in contact: check the units of load and friction"
         )
     inputs, solves = _inputs(scene, solution, tolerances)
     by_tau, by_beta = friction_slopes(scene, solution)
-    excess = solution.features.excess
+    excess = solution.details.features.excess
     factor = COVERAGE * EXCESS_SPREAD * abs(excess)
     slopes = (by_tau, by_beta, *(_log_slope(scene, solution, name) for name in further))
-    parts = dict(solution.uncertainty["friction_coefficient_corrected"])
-    edge = parts.pop("active set", 0.0)
+    name = "friction_coefficient_corrected"
+    edge = solution.uncertainty[name].get("active set") or 0.0
+    rest = error_bound(solution, name) - edge
     pressures, weights = _condensed(solution, scene.load)
     contact = solution.contact
     on_border = float(contact.sum() - contact[1:-1, 1:-1].sum()) / float(contact.sum())
@@ -144,12 +147,12 @@ def _response(
         at=at,
         mu=solution.friction_coefficient_corrected,
         slopes=slopes,
-        numerical=min(math.fsum(parts.values()), 10 * abs(solution.friction_coefficient)),
-        shared=factor / scene.load * solution.problem.friction.jump,
+        numerical=min(rest, 10 * abs(solution.friction_coefficient)),
+        shared=factor / scene.load * solution.details.problem.friction.jump,
         contact_edge=edge,
         inputs=inputs,
         contact_fraction=(solution.contact_area - excess) / solution.grid.nominal_area,
-        border=on_border * solution.problem.counts_from_first_contact,
+        border=on_border * solution.details.problem.counts_from_first_contact,
         plastic=solution.plastic_area / solution.contact_area,
         pressures=pressures,
         weights=weights,
@@ -181,7 +184,7 @@ def _inputs(
 
 def _condensed(solution: Solution, load: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Mean pressures of groups of elements, ordered by pressure, and the groups' weights."""
-    active = solution.contact & ~solution.excluded
+    active = solution.contact & ~solution.details.excluded
     slopes = solution.slopes
     along = (slopes.cos_x * slopes.cos_y + solution.grid.zeros)[active] * solution.grid.element_area / load
     pressure = solution.pressure[active]

@@ -68,7 +68,7 @@ def identify(
     ------
     InputError
         input out of range
-    ArithmeticError
+    NotConverged
         a solve that does not converge
     """
     rows, tolerances = check_rows(rows), dict(tolerances or {})

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -109,11 +108,15 @@ class Slopes:
         np.sqrt(squares, out=squares)
         return np.divide(1, squares, out=squares)
 
-    @property
-    def obliqueness(self) -> Array:
-        """Former name of `cosine_product`, for one release."""
-        warnings.warn("`Slopes.obliqueness` is now `Slopes.cosine_product`", DeprecationWarning, stacklevel=2)
-        return self.cosine_product
+    @cached_property
+    def theta_x(self) -> Array:
+        """Slope angle along the sliding direction, positive uphill (rad)."""
+        return np.arctan(self.tan_x)
+
+    @cached_property
+    def theta_y(self) -> Array:
+        """Slope angle along the direction 90 degrees anticlockwise of sliding (rad)."""
+        return np.arctan(self.tan_y)
 
     def per_cosine_product(self, values: Array) -> Array:
         """Return ``values / cosine_product``, in place where that is 1 everywhere."""

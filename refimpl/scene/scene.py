@@ -34,7 +34,7 @@ _FAVOURED = 16  # a divisor of all sizes in `refimpl.accuracy.refinement`
 _SLENDER = 4.0  # lengths' ratio from which a refinement's grids are finer along the longer side
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Body:
     """A half-space of one material with a rough surface (a `Surface`, an array of heights, or a sum)."""
 
@@ -52,7 +52,7 @@ class Body:
         return Body(self.material, parts[0] if len(parts) == 1 else SurfaceSum(tuple(parts)))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Scene:
     """Two rough half-spaces sliding under a normal load.
 

@@ -25,13 +25,14 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from refimpl.errors import InputError, require_number
+from refimpl.errors import InputError, NotConverged, require_number
 from refimpl.model.forces import facet_resultants
 from refimpl.scene.parameters import check_tolerances
 from refimpl.scene.scene import Scene
 from refimpl.sensitivities.difference_quotients import NUMBERS, solved_again
 from refimpl.sensitivities.half_space import half_space_error
 from refimpl.sensitivities.sensitivity import Sensitivity, sensitivity
+from refimpl.solution.quantities import error_bound
 from refimpl.solution.solution import Solution
 
 
@@ -107,7 +108,7 @@ def budget(
     numbers = {
         number: Budget(
             value=derivatives.found[number],
-            numerical=math.fsum(solution.uncertainty.get(number, {}).values()),
+            numerical=error_bound(solution, number),
             inputs={
                 name: abs(derivatives.derivatives[number][name] * derivatives.parameters[name]) * tolerance
                 for name, tolerance in tolerances.items()
@@ -128,7 +129,7 @@ def _mapping(name: str, given: Mapping[str, float] | None) -> dict[str, float]:
 
 def _model_form(solution: Solution, derivatives: Sensitivity) -> dict[str, dict[str, float]]:
     """Both sources for each number; infinite where the slope is beyond Appendix A's table."""
-    at = solution.slope_error
+    at = solution.details.slope_error
     wrong = None if at.at_rms is None else max(at.at_rms, at.across_at_rms or 0.0)
     cosines = _cosines(solution, derivatives)
     moduli = [name for name in derivatives.parameters if name.endswith(".E")]
@@ -151,7 +152,7 @@ def _half_space(
     """
     try:
         error = half_space_error(scene, solution)
-    except ArithmeticError:
+    except NotConverged:
         return dict.fromkeys(NUMBERS, math.inf)
     stated = {number: error.stated(number.removesuffix("_corrected")) for number in NUMBERS}
     return {number: max(0.0, stated[number] - sources[number]["coefficients"]) for number in NUMBERS}
@@ -162,7 +163,7 @@ def _plasticity(scene: Scene, solution: Solution) -> dict[str, float]:
 
     Empty where no pressure exceeds the hardness, and where none is given.
     """
-    hardness, problem = solution.problem.pair.softer_hardness, solution.problem
+    hardness, problem = solution.details.problem.pair.softer_hardness, solution.details.problem
     if hardness is None or solution.max_pressure <= hardness or problem.terms.plastic:
         return {}
     if scene.load > hardness * problem.grid.nominal_area:

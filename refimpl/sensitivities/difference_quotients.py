@@ -16,7 +16,7 @@ import numpy as np
 from refimpl.accuracy.discretisation_error import AREA
 from refimpl.accuracy.scatter import area_scatter
 from refimpl.driver.solve import solve
-from refimpl.errors import InputError
+from refimpl.errors import InputError, NotConverged
 from refimpl.scene.parameters import with_parameter
 from refimpl.scene.scene import Scene
 from refimpl.solution.solution import Solution
@@ -33,16 +33,16 @@ def difference_quotients(
 ) -> tuple[dict[str, float], float]:
     """Return each number's derivative over a parameter by two solves, and how far apart their values are.
 
-    The solves are a step to either side, or to one where the other is not allowed. Raises `ArithmeticError`
+    The solves are a step to either side, or to one where the other is not allowed. Raises `NotConverged`
     where one of both solves does not converge, `InputError` where neither side is allowed.
     """
-    step, plastic = _stride(scene, solution, name, value), solution.problem.terms.plastic
+    step, plastic = _stride(scene, solution, name, value), solution.details.problem.terms.plastic
     (low, below), (high, above) = both_sides(
         name, value, step, lambda at: solved_again(with_parameter(scene, name, at), solution, plastic=plastic)
     )
     for ended in (below, above):
         if not ended.converged:
-            raise ArithmeticError(f"a solve with {name} changed by {step:.2g} ended as {ended.status.value}")
+            raise NotConverged(f"a solve with {name} changed by {step:.2g} ended as {ended.status.value}")
     span = high - low
     ends = _numbers(above), _numbers(below)
     return {number: (ends[0][number] - ends[1][number]) / span for number in ends[0]}, span
@@ -51,7 +51,7 @@ def difference_quotients(
 def _numbers(solution: Solution) -> dict[str, float]:
     found = {number: float(getattr(solution, number)) for number in NUMBERS}
     # a count of faces, as the published correction has it, scatters more
-    return found | {NUMBERS[1]: solution.contact_area - solution.features.excess}
+    return found | {NUMBERS[1]: solution.contact_area - solution.details.features.excess}
 
 
 def solved_again(
@@ -63,7 +63,7 @@ def solved_again(
     grid: tuple[int, int] | None = None,
 ) -> Solution:
     """Solve a scene on a solution's grid, or on another one, with its terms and its tolerance."""
-    terms = solution.problem.terms
+    terms = solution.details.problem.terms
     corrected = terms.slope_correction and not plastic
     return solve(
         scene,
@@ -74,7 +74,7 @@ def solved_again(
         coupled=None if terms.slope_correction else terms.coupled,  # facet tractions include shear
         tilted=terms.tilted,
         plastic=plastic,
-        tolerance=solution.tolerance,
+        tolerance=solution.details.tolerance,
     )
 
 
@@ -100,7 +100,7 @@ def _stride(scene: Scene, solution: Solution, name: str, value: float) -> float:
 
 def _count_scatter(solution: Solution) -> float:
     """Standard deviation of a counted area (m^2)."""
-    return AREA.scatter * area_scatter(solution.features)
+    return AREA.scatter * area_scatter(solution.details.features)
 
 
 def area_bound(solution: Solution, value: float, span: float) -> float:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from refimpl.errors import NotConverged
 from refimpl.grid import Array
 from refimpl.model.problem import Problem
 from refimpl.scene.discretise import discretise
@@ -48,7 +49,7 @@ def fixed_answer(
     residuals = [fixed.residual(problem, fixed.pressure, fixed.approach) for problem in (below, above)]
     found = fixed.response((residuals[1] - residuals[0]) / span)
     if not found.residual <= _SOLVED:
-        raise ArithmeticError(f"the derivative over {name} is not found: {found.residual:.1e} is left of it")
+        raise NotConverged(f"the derivative over {name} is not found: {found.residual:.1e} is left of it")
     before, after = (
         fixed.forces(
             problem,

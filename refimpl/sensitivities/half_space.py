@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from refimpl.errors import NotConverged
 from refimpl.grid import Array
 from refimpl.half_space.boundary_perturbation import gap_changes
 from refimpl.half_space.model_form import FINITE_STRAIN, SECOND_ORDER, contact_of, steepness
@@ -54,12 +55,12 @@ class HalfSpaceError:
 def half_space_error(scene: Scene, solution: Solution) -> HalfSpaceError:
     """Estimate what the half-space costs approach, N, mu, A, p_max and Q of a solution.
 
-    Costs two solves on the solution's grid. Raises `ArithmeticError` where one does not converge.
+    Costs two solves on the solution's grid. Raises `NotConverged` where one does not converge.
     """
-    problem = solution.problem
+    problem = solution.details.problem
     z_lower, z_upper = problem.heights
     first = solution.approach + problem.datum  # from the first contact of the scene as given
-    moved = z_lower - solution.surface_lower, solution.surface_upper - z_upper + first
+    moved = z_lower - solution.surfaces[0], solution.surfaces[1] - z_upper + first
     lower, upper = gap_changes(contact_of(problem, solution.pressure, solution.traction, moved))
     receded = replace(
         scene,
@@ -93,9 +94,9 @@ def _surface(heights: Array, solution: Solution) -> ArraySurface:
 
 
 def _solved(scene: Scene, solution: Solution, approach: float | None) -> Solution:
-    found = solved_again(scene, solution, plastic=solution.problem.terms.plastic, approach=approach)
+    found = solved_again(scene, solution, plastic=solution.details.problem.terms.plastic, approach=approach)
     if not found.converged:
-        raise ArithmeticError(f"the solve with the surfaces' recession ended as {found.status.value}")
+        raise NotConverged(f"the solve with the surfaces' recession ended as {found.status.value}")
     return found
 
 
@@ -108,7 +109,7 @@ def advice(error: HalfSpaceError, solution: Solution) -> str:
         name: abs(getattr(solution, name))
         for name in ("friction_coefficient", "contact_area", "max_pressure")
     }
-    size["approach"] = abs(solution.approach + solution.problem.datum)
+    size["approach"] = abs(solution.approach + solution.details.problem.datum)
     size["normal_force"] = abs(solution.normal_force)
     stated = {name: error.stated(name) / value for name, value in size.items() if value}
     rest = {
@@ -118,7 +119,7 @@ def advice(error: HalfSpaceError, solution: Solution) -> str:
     }
     worst = max(stated, key=lambda name: stated[name])
     left = max(rest.values())
-    slope = math.degrees(math.atan(math.sqrt(steepness(solution.problem, solution.contact))))
+    slope = math.degrees(math.atan(math.sqrt(steepness(solution.details.problem, solution.contact))))
     if slope > JUDGED_TO:
         return f"slopes of {slope:.2g} degrees, beyond the {JUDGED_TO:g} judged: use finite elements"
     if stated[worst] <= ACCEPTED:

@@ -22,14 +22,13 @@ its error changed by as much while the parameter changes by a factor of e.
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from refimpl.errors import InputError, require_one_of
+from refimpl.errors import Error, InputError, require_one_of
 from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Terms
 from refimpl.scene.parameters import differentiable_parameters, parameters
@@ -43,6 +42,7 @@ from refimpl.sensitivities.difference_quotients import (
 from refimpl.sensitivities.edge_motion import EdgeMotion
 from refimpl.sensitivities.fixed_answer import Answer, fixed_answer
 from refimpl.sensitivities.fixed_contact import FixedContact
+from refimpl.solution.quantities import error_bound
 from refimpl.solution.solution import Solution
 
 
@@ -66,12 +66,8 @@ class Sensitivity:
     def relative(self, number: str, parameter: str) -> float:
         """``(p / q) dq/dp``: the per cents that q changes by for one per cent of p.
 
-        For one release ``friction_coefficient`` and ``contact_area`` mean the corrected numbers, with a
-        DeprecationWarning. Raises `InputError` for a number that is zero, and for a name that is none.
+        Raises `InputError` for a number that is zero, and for a name that is none.
         """
-        if f"{number}_corrected" in self.derivatives:
-            warnings.warn(f"derivatives are those of {number}_corrected", DeprecationWarning, stacklevel=2)
-            number += "_corrected"
         require_one_of("number", number, self.derivatives)
         require_one_of("parameter", parameter, self.parameters)
         derivative, found = self.derivatives[number][parameter], self.found[number]
@@ -86,14 +82,16 @@ def sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = 
     ``solution`` is the scene's own, under its load. Costs one GMRES solve a parameter, two solves on the
     solution's grid for the load and for each number of a surface, and as much on half the elements a side.
     ``names`` restricts the parameters to these and the load. Raises `InputError` for a solution that is not
-    in contact, not certified or another scene's, `ArithmeticError` where a linear or full solve does not
+    in contact, not certified or another scene's, `NotConverged` where a linear or full solve does not
     converge.
     """
     _check(scene, solution)
     found, coarse = grid_sensitivity(scene, solution, names), None
     half = [max(1, n // 2) for n in solution.grid.shape]
-    with suppress(InputError, ArithmeticError):
-        again = solved_again(scene, solution, plastic=solution.problem.terms.plastic, grid=(half[0], half[1]))
+    with suppress(Error):
+        again = solved_again(
+            scene, solution, plastic=solution.details.problem.terms.plastic, grid=(half[0], half[1])
+        )
         _check(scene, again)
         coarse = grid_sensitivity(scene, again, names)
 
@@ -101,7 +99,7 @@ def sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = 
         if coarse is None:
             return math.inf
         change = found.derivatives[number][name] - coarse.derivatives[number][name]
-        moved = solution.error(number) / found.parameters[name]
+        moved = error_bound(solution, number) / found.parameters[name]
         return math.hypot(found.scatter[number][name], change, moved)
 
     return replace(
@@ -115,13 +113,13 @@ def grid_sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | No
 
     Raises as `sensitivity` does for solves that do not converge.
     """
-    base = solution.problem.with_terms(_terms(solution))
-    active = solution.contact & ~solution.excluded
+    base = solution.details.problem.with_terms(_terms(solution))
+    active = solution.contact & ~solution.details.excluded
     fixed = FixedContact(base, solution.pressure, active, solution.slopes)
     values, yields = differentiable_parameters(scene), bool(fixed.capped.any())
     if names is not None:
         values = {name: value for name, value in values.items() if name in ("load", *names)}
-    excess = solution.features.excess
+    excess = solution.details.features.excess
     answers = {name: fixed_answer(scene, base, fixed, name, value, excess) for name, value in values.items()}
     quotients = {
         name: difference_quotients(scene, solution, name, value)
@@ -152,9 +150,9 @@ def _check(scene: Scene, solution: Solution) -> None:
         raise InputError("friction", scene.friction, "a law that is linear, for derivatives")
     if not solution.contact.any():
         raise InputError("solution", solution.status.value, "a solution in contact")
-    if not solution.certified:
+    if not solution.details.certified:
         raise InputError("solution", solution.status.value, "a solution whose certificate holds")
-    problem = solution.problem
+    problem = solution.details.problem
     if solution.plastic_area == solution.contact_area:
         raise InputError("solution", "all contact at the hardness", "one with elastic contact")
     if not (problem.gap.any() or problem.counts_from_first_contact):
@@ -175,7 +173,7 @@ def _terms(solution: Solution) -> Terms:
     """
     requested = solution.plan.requested
     coupled, tilted = (choice is not False for choice in (requested.coupled, requested.tilted))
-    return replace(solution.problem.terms, coupled=coupled, tilted=tilted)
+    return replace(solution.details.problem.terms, coupled=coupled, tilted=tilted)
 
 
 def _gathered(
@@ -216,8 +214,8 @@ def friction_slopes(scene: Scene, solution: Solution) -> tuple[float, float]:
     includes it. Where all contact is at the hardness, pressures are fixed and the slopes are sums.
     Both parameters must be positive. Raises as `sensitivity` does.
     """
-    base = solution.problem.with_terms(_terms(solution))
-    active, excess = solution.contact & ~solution.excluded, solution.features.excess
+    base = solution.details.problem.with_terms(_terms(solution))
+    active, excess = solution.contact & ~solution.details.excluded, solution.details.features.excess
     if solution.contact.any() and solution.plastic_area == solution.contact_area:
         along = solution.slopes.cos_x * solution.slopes.cos_y * solution.grid.element_area / scene.load
         mean_area = float(np.sum(active * along)) - excess / scene.load

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from refimpl.driver.solve import solve
-from refimpl.errors import require_number
+from refimpl.errors import NotConverged, require_number
 from refimpl.grid import Array
 from refimpl.half_space.influence_error import constant_along_an_axis
 from refimpl.half_space.local_error import local_error, share_above, short_wave_share
@@ -76,12 +76,12 @@ class SurfaceVerdict:
 def surface_verdict(scene: Scene, grid: int | tuple[int, int]) -> SurfaceVerdict:
     """Solve a scene three times and judge the half-space on its surfaces.
 
-    Raises `InputError` for what `solve` refuses, `ArithmeticError` where a solve does not converge.
+    Raises `InputError` for what `solve` refuses, `NotConverged` where a solve does not converge.
     """
     solution = solve(scene, grid)
     if not solution.converged:
-        raise ArithmeticError(f"the solve ended as {solution.status.value}")
-    problem = solution.problem
+        raise NotConverged(f"the solve ended as {solution.status.value}")
+    problem = solution.details.problem
     error = half_space_error(scene, solution)
     local = local_error(problem)
     short = short_wave_share(problem)
@@ -97,7 +97,7 @@ def surface_verdict(scene: Scene, grid: int | tuple[int, int]) -> SurfaceVerdict
 
 
 def _evidence(solution: Solution, short: float) -> str:
-    problem = solution.problem
+    problem = solution.details.problem
     slope = math.degrees(math.atan(math.sqrt(steepness(problem, solution.contact))))
     if constant_along_an_axis(*problem.heights):
         judged = "56 plane contacts solved by finite elements, slopes of 1 to 20 degrees"

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from refimpl.errors import InputError
 from refimpl.grid.contact_patches import patch_labels
-from refimpl.solution.record import UNITS, Record
+from refimpl.solution.quantities import QUANTITIES
+from refimpl.solution.record import Record
 
 
 class Field(NamedTuple):
@@ -24,25 +25,23 @@ class Field(NamedTuple):
 def fields_of(solution: Record) -> dict[str, Field]:
     """Return the fields that array files hold, by name; all of the grid's shape, indexed along x, then y."""
     periodic = solution.grid.periodic
+    lower, upper = solution.surfaces
     labels = patch_labels(solution.contact, periodic=periodic)
     return {
         "pressure": Field(solution.pressure, "Pa", "local contact pressure f"),
         "traction": Field(solution.traction, "Pa", "local friction r"),
         "gap": Field(solution.gap, "m", "gap between the deformed surfaces, by Eq. (6)"),
-        "surface_lower": Field(solution.surface_lower, "m", "deformed height of the lower surface"),
-        "surface_upper": Field(solution.surface_upper, "m", "deformed height of the upper surface"),
-        "theta_x": Field(solution.theta_x, "rad", "slope angle along the sliding direction, positive uphill"),
-        "theta_y": Field(solution.theta_y, "rad", "slope angle 90 degrees anticlockwise of sliding"),
+        "surface_lower": Field(lower, "m", "deformed height of the lower surface"),
+        "surface_upper": Field(upper, "m", "deformed height of the upper surface"),
+        "theta_x": Field(
+            solution.slopes.theta_x, "rad", "slope angle along the sliding direction, positive uphill"
+        ),
+        "theta_y": Field(solution.slopes.theta_y, "rad", "slope angle 90 degrees anticlockwise of sliding"),
         "plastic_indentation": Field(solution.plastic_indentation, "m", "plastic indentation w_p"),
-        "plastic": Field(solution.plastic, "1", "elements at the hardness"),
-        "excluded": Field(solution.excluded, "1", "elements without adhesive shear"),
+        "plastic": Field(solution.details.plastic, "1", "elements at the hardness"),
+        "excluded": Field(solution.details.excluded, "1", "elements without adhesive shear"),
         "patch": Field(labels, "1", "contact patch, numbered from 1; 0 without contact"),
     }
-
-
-def numbers_of(solution: Record) -> dict[str, float]:
-    """Return the numbers of `UNITS`."""
-    return {name: float(getattr(solution, name)) for name in UNITS}
 
 
 def attributes_of(solution: Record, provenance: Mapping[str, str] | None = None) -> dict[str, Any]:
@@ -51,17 +50,16 @@ def attributes_of(solution: Record, provenance: Mapping[str, str] | None = None)
         "title": "rough contact with friction, after Karpenko and Akay (2001)",
         "status": solution.status.value,
         "method": solution.plan.method,
-        "tolerance": solution.tolerance,
+        "tolerance": solution.details.tolerance,
         "largest_residual": float(solution.certificate.largest),
         "periodic": int(solution.grid.periodic),
-        "sliding_direction": solution.sliding_direction,
+        "sliding_direction": solution.details.sliding_direction,
         "warnings": "\n".join(map(str, solution.warnings)),
     }
-    for name, value in numbers_of(solution).items():
-        found[name] = value
-        found[f"{name}_unit"] = UNITS[name]
-        if name in solution.uncertainty:
-            found[f"{name}_error"] = solution.error(name)
+    for name, quantity in QUANTITIES.items():
+        found |= {name: float(getattr(solution, name)), f"{name}_unit": quantity.unit}
+        if (error := solution.error(name)) is not None:
+            found[f"{name}_error"] = error
     return found | dict(provenance or {})
 
 

@@ -9,32 +9,20 @@ import numpy as np
 
 from refimpl.accuracy.digits import bar_of, digits_of, verdict
 from refimpl.grid import Array
+from refimpl.solution.quantities import QUANTITIES
 from refimpl.solution.record import Record
+from refimpl.solution.units import printed_unit
 
-# attribute of Solution, name in the table, factor from SI to the unit shown, that unit
-SHOWN = (
-    ("friction_coefficient_corrected", "friction coefficient mu", 1.0, ""),
-    ("friction_coefficient", "  summed over elements", 1.0, ""),
-    ("contact_area", "contact area A", 1e6, "mm^2"),
-    ("contact_area_share", "A/A0", 1.0, ""),
-    ("plastic_area", "plastic area", 1e6, "mm^2"),
-    ("max_pressure", "maximum pressure p_max", 1e-6, "MPa"),
-    ("mean_pressure", "mean contact pressure", 1e-6, "MPa"),
-    ("mean_gap", "mean gap", 1e6, "um"),
-    ("approach", "approach", 1e6, "um"),
-    ("normal_force", "normal force N", 1.0, "N"),
-    ("friction_force_corrected", "friction force F", 1.0, "N"),
-    ("binormal_force", "binormal force Q", 1.0, "N"),
-)
 _CELLS = 32  # cells along the longer side of the map
 _INK = "#0072B2"  # Okabe and Ito 2008
 
 
 def line(solution: Record) -> str:
     """Return one line: status, grid, mu with its error, A."""
-    mu = " ".join(shown(solution, "friction_coefficient_corrected"))
-    area = " ".join(shown(solution, "contact_area", 1e6))
-    return f"<Solution {solution.status.value}, {solution.grid}: mu = {mu}, A = {area} mm^2>"
+    mu, area = (
+        " ".join(shown(solution, name)) for name in ("friction_coefficient_corrected", "contact_area")
+    )
+    return f"<Solution {solution.status.value}, {solution.grid}: mu = {mu}, A = {area}>"
 
 
 def table(solution: Record) -> str:
@@ -61,11 +49,19 @@ def html(solution: Record) -> str:
     )
 
 
-def shown(solution: Record, name: str, factor: float = 1.0) -> list[str]:
-    """Return a number, its bar and "(not usable)", each where there is one; ``factor``: SI to the unit."""
-    error = solution.error(name) * factor
-    texts = digits_of(getattr(solution, name) * factor, error), bar_of(error), verdict_on(solution, name)
-    return [text for text in texts if text]
+def shown(solution: Record, name: str) -> list[str]:
+    """Return a number, its bar, "(not usable)" and its unit, each where there is one."""
+    number, unit = number_and_unit(solution, name)
+    return [*number, unit] if unit else number
+
+
+def number_and_unit(solution: Record, name: str) -> tuple[list[str], str]:
+    """Return a number with its bar and "(not usable)", where there are such, and the unit at its scale."""
+    value, error = getattr(solution, name), solution.error(name)
+    unit = printed_unit(value, QUANTITIES[name].unit)
+    error = None if error is None else error / unit.size
+    texts = digits_of(value / unit.size, error), bar_of(error), verdict_on(solution, name)
+    return [text for text in texts if text], unit.name
 
 
 def verdict_on(solution: Record, name: str) -> str:
@@ -84,13 +80,18 @@ def verdict_on(solution: Record, name: str) -> str:
     return verdict(solution.error(name), scale.get(name, value))
 
 
-def _rows(solution: Record) -> list[tuple[str, str, str]]:
-    left = set() if solution.plastic_area else {"plastic_area"}
+def rows(solution: Record, table: str) -> list[tuple[str, list[str], str]]:
+    """Return name, number and unit of each number that a table lists; what is plastic only where
+    anything is."""
     return [
-        (name, " ".join(shown(solution, attribute, factor)), unit)
-        for attribute, name, factor, unit in SHOWN
-        if attribute not in left
+        (quantity.label, *number_and_unit(solution, name))
+        for name, quantity in QUANTITIES.items()
+        if table in quantity.tables and (solution.plastic_area or not name.startswith("plastic"))
     ]
+
+
+def _rows(solution: Record) -> list[tuple[str, str, str]]:
+    return [(name, " ".join(number), unit) for name, number, unit in rows(solution, "prompt")]
 
 
 def _map(solution: Record) -> str:

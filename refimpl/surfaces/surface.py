@@ -60,12 +60,6 @@ class Surface(ABC):
     kind: ClassVar[str] = ""
     __array_ufunc__ = None  # so that `array + surface` asks the surface, not each number of the array
 
-    def __init_subclass__(cls, **keywords: Any) -> None:
-        super().__init_subclass__(**keywords)
-        if "_sample" in vars(cls):  # before version 0.2
-            warnings.warn(f"{cls.__name__}: _sample is now heights_on", DeprecationWarning, stacklevel=2)
-            cls.heights_on = vars(cls)["_sample"]  # type: ignore[method-assign]  # its former name
-
     @abstractmethod
     def heights_on(self, grid: Grid, offset: tuple[float, float]) -> Array:
         """Return heights (m, positive upwards) at ``(grid.x[i] + offset[0], grid.y[j] + offset[1])``.

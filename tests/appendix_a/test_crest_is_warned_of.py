@@ -33,10 +33,10 @@ def test_a_crest_on_a_crest_is_warned_of(slope: float, off: float) -> None:
     assert committed_errors()[slope] == pytest.approx(off, abs=0.05)
     solution = solved(slope)
     assert warns_of_the_half_space(solution)
-    assert solution.model_form.normal_force > off / 100
+    assert solution.details.model_form.normal_force > off / 100
 
 
 def test_gentle_crests_state_their_error_without_a_warning() -> None:
     solution = solved(2.5)
     assert not warns_of_the_half_space(solution)
-    assert solution.model_form.normal_force > committed_errors()[2.5] / 100
+    assert solution.details.model_form.normal_force > committed_errors()[2.5] / 100

@@ -136,7 +136,7 @@ def test_production_finds_the_same_state(seed: int) -> None:
     excluded = (expected.pressure > 0) & ~expected.active
     assert found.status is (rf.Status.CYCLED if case.tau and excluded.any() else rf.Status.CONVERGED)
     assert np.abs(found.pressure - expected.pressure).max() <= 1e-8 * expected.p_max
-    assert np.array_equal(found.excluded & found.contact, excluded & (case.tau > 0))
+    assert np.array_equal(found.details.excluded & found.contact, excluded & (case.tau > 0))
     assert found.friction_coefficient == pytest.approx(expected.mu, abs=1e-8)
     assert found.binormal_force == pytest.approx(expected.transverse, abs=1e-8 * expected.normal)
     assert found.approach == pytest.approx(expected.approach, rel=1e-7)

@@ -10,7 +10,6 @@ import signal
 import sys
 import threading
 from collections.abc import Sequence
-from importlib.metadata import version
 from typing import NoReturn
 
 from verification.cli import (
@@ -75,6 +74,16 @@ class Parser(argparse.ArgumentParser):
         self.exit(BAD_INPUT, f"{self.prog}: {printable(message)} (see {self.prog} --help)\n")
 
 
+class _Version(argparse.Action):
+    """Print the version, for which alone `refimpl` is imported: --help is quick."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        """Exit with status 0."""
+        from refimpl import __version__
+
+        parser.exit(0, f"{parser.prog} {__version__}\n")
+
+
 def parser() -> argparse.ArgumentParser:
     """The whole command line."""
     top: argparse.ArgumentParser = Parser(
@@ -83,7 +92,7 @@ def parser() -> argparse.ArgumentParser:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    top.add_argument("--version", action="version", version=f"rough-friction {version('rough-friction')}")
+    top.add_argument("--version", action=_Version, nargs=0, help="show the program's version and exit")
     commands = top.add_subparsers(title="subcommands", metavar="COMMAND", required=True)
     for module, text, about in COMMANDS:
         name, one_of = module.__name__.rpartition(".")[2], solve.ONE_OF if module is solve else ()

@@ -92,7 +92,7 @@ def write_vtk(solution: Solution, path: Path) -> None:
 
     x, y = np.meshgrid(solution.grid.x, solution.grid.y, indexing="ij")
     sheets = [np.column_stack([x.ravel(), y.ravel(), z.ravel()])
-              for z in (solution.surface_lower, solution.surface_upper)]  # fmt: skip
+              for z in solution.surfaces]  # fmt: skip
     number = np.arange(x.size).reshape(x.shape)
     around = (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
     squares = np.stack(around, axis=-1).reshape(-1, 4)

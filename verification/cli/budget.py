@@ -6,20 +6,12 @@ import math
 from typing import TYPE_CHECKING
 
 from refimpl.accuracy.digits import bar_of, digits_of
-from verification.cli.solve_table import QUANTITIES
+from refimpl.solution.quantities import QUANTITIES
+from refimpl.solution.units import printed_unit
 from verification.framework.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from refimpl.sensitivities.budget import Budget, Budgets
-
-# number of a budget, its name in the table
-NAMES = {
-    "friction_coefficient_corrected": "mu",
-    "contact_area_corrected": "A",
-    "max_pressure": "p_max",
-    "binormal_force": "Q",
-}
-_UNITS = {name: (factor, unit) for name, _, factor, unit in QUANTITIES}
 
 
 def document(budgets: Budgets) -> dict[str, object]:
@@ -35,7 +27,7 @@ def document(budgets: Budgets) -> dict[str, object]:
 def table(budgets: Budgets) -> str:
     """Parts of each number in per cent of it, the number with all of them, and per cents that it changes by
     for one of a parameter."""
-    header = ["", *(NAMES[number] for number in budgets.numbers)]
+    header = ["", *(QUANTITIES[number].symbol for number in budgets.numbers)]
     numbers = list(budgets.numbers.values())
     widths: dict[str, list[float | None]] = {
         "numerical": [part.numerical for part in numbers],
@@ -65,9 +57,10 @@ def _in_words(budgets: Budgets) -> str:
     """Each number with its total in its unit, what that leaves out, and what it does not know."""
     found = []
     for number, part in budgets.numbers.items():
-        factor, unit = _UNITS[number]
-        value, total = factor * part.value, factor * part.total
-        found.append(f"{NAMES[number]} = {digits_of(value, total)} {bar_of(total)} {unit}".rstrip())
+        quantity = QUANTITIES[number]
+        unit = printed_unit(part.value, quantity.unit)
+        value, total = part.value / unit.size, part.total / unit.size
+        found.append(f"{quantity.symbol} = {digits_of(value, total)} {bar_of(total)} {unit.name}".rstrip())
     lines = [wrapped(", ".join(found), "with all parts: ")]
     if all(part.sampling is None for part in budgets.numbers.values()):
         lines.append("sampling is of means over realisations: other specimens are not in this total (sweep)")

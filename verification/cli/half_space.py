@@ -15,13 +15,6 @@ if TYPE_CHECKING:
     from refimpl import Scene
     from refimpl.sensitivities.surface_verdict import SurfaceVerdict
 
-ROWS = (  # name, label, factor, unit
-    ("friction_coefficient", "mu", 1.0, ""),
-    ("contact_area", "A", 1e6, "mm^2"),
-    ("max_pressure", "p_max", 1e-6, "MPa"),
-    ("approach", "approach", 1e6, "um"),
-    ("normal_force", "N at this approach", 1.0, "N"),
-)
 ALONE = {"E": 200e9, "nu": 0.3, "tau": 0.0, "beta": 0.1}  # assumed for a surface file
 
 OPTIONS: Options = {
@@ -114,16 +107,25 @@ def _document(name: str, note: str, verdict: SurfaceVerdict) -> Mapping[str, obj
 
 
 def _text(name: str, note: str, verdict: SurfaceVerdict) -> str:
+    from refimpl.solution.quantities import QUANTITIES
+    from refimpl.solution.units import printed_unit
+
     rows = [["number", "half-space", "corrected", "stated error", ""]]
-    numbers = verdict.numbers()
-    for number, label, factor, unit in ROWS:
-        row = numbers[number]
-        cells = [f"{row['value'] * factor:.4g}", f"{row['corrected'] * factor:.4g}"]
-        rows.append([label, *cells, f"{row['stated'] * factor:.2g}", unit])
+    for number, row in verdict.numbers().items():
+        unit = printed_unit(row["value"], QUANTITIES[number].unit)
+        value, corrected, stated = (row[key] / unit.size for key in ("value", "corrected", "stated"))
+        rows.append(
+            [QUANTITIES[number].label, f"{value:.4g}", f"{corrected:.4g}", f"{stated:.2g}", unit.name]
+        )
     lines = [f"{name}: {verdict.solution.grid} elements"]
     if note:
         lines.append(wrapped(note, "assumed: "))
     lines.append(f"coefficients of a flat are off by more than 2 % on {verdict.share_above:.1%} of the area")
-    lines += ["", columns(rows), "", "stated error: first order, what it leaves, and finite strain"]
+    lines += [
+        "",
+        columns(rows),
+        "",
+        "stated error: first order, what it leaves, and finite strain; N: at this approach",
+    ]
     lines += [verdict.advice, wrapped(verdict.evidence, "evidence: ")]
     return "\n".join(lines)

@@ -8,16 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 from verification.cli.plot_maps import View, domain_map, gap_map, pressure_map, shear_map, view_of
 from verification.cli.plot_style import (
-    AREAS,
     BLACK,
     BLUE,
     GREEN,
-    LENGTHS,
     ORANGE,
     PINK,
-    PRESSURES,
     print_style,
-    unit_at_scale,
     write,
 )
 
@@ -36,6 +32,7 @@ LEFT, RIGHT = 0.6, 4.2  # inches, left edges of both columns
 MAP, LOWEST_MAP, GRAPH = 2.35, 1.0, 1.05  # inches: width of all panels, least height of a map, of a graph
 KEY = 2.15  # inches, least height of the numbers and the legend
 _BINS = 40  # bins of a histogram
+_SYMBOLS = {"mu": "μ", "p_max": "$p_{max}$", "delta": "approach δ"}
 _GREY = "0.45"
 BELOW, ABOVE = 0.42, 0.25  # inches, for an axis with its label, and for a title
 
@@ -100,32 +97,21 @@ def _panels(height: float) -> tuple[Figure, dict[str, Axes]]:
 
 def numbers_of(solution: Solution) -> list[str]:
     """Return the lines of numbers, each with the digits that its error bar leaves."""
-    area = unit_at_scale(100 * solution.contact_area, AREAS)
-    pressure = unit_at_scale(solution.max_pressure, PRESSURES)
-    approach = unit_at_scale(solution.approach, LENGTHS)
-    rows = (
-        ("friction_coefficient_corrected", "μ", 1.0, ""),
-        ("contact_area", "A", area.size, area.name),
-        ("max_pressure", "$p_{max}$", pressure.size, pressure.name),
-        ("approach", "approach", approach.size, approach.name),
-    )
-    turned = math.degrees(solution.sliding_direction)
+    from refimpl.solution.quantities import QUANTITIES
+
+    rows = ((name, quantity.symbol) for name, quantity in QUANTITIES.items() if "picture" in quantity.tables)
+    turned = math.degrees(solution.details.sliding_direction)
     return [
-        *(_with_bar(solution, *row) for row in rows),
-        f"N = {solution.normal_force:.6g} N, A/A0 = {100 * solution.contact_area_share:.3g} %",
+        *(f"{_SYMBOLS.get(symbol, symbol)} = {_with_bar(solution, name)}" for name, symbol in rows),
         f"sliding at {turned:.4g}° from x",
         f"{solution.status.value}, {solution.grid.shape[0]} × {solution.grid.shape[1]} elements",
     ]
 
 
-def _with_bar(solution: Solution, name: str, symbol: str, size: float, unit: str) -> str:
-    from refimpl.accuracy.digits import bar_of, digits_of, usable
+def _with_bar(solution: Solution, name: str) -> str:
+    from refimpl.solution.display import shown
 
-    error, value = solution.error(name) / size, getattr(solution, name) / size
-    number = f"{symbol} = {digits_of(value, error)}"
-    if not usable(error, value):
-        return f"{number} {unit} (not usable)".replace("  ", " ")
-    return " ".join(part for part in (number, bar_of(error).replace("+-", "±"), unit) if part)
+    return " ".join(shown(solution, name)).replace("+-", "±").replace("um", "µm").replace("^2", "²")
 
 
 def _key(axes: Axes, solution: Solution, view: View, hertz: HertzSphere | None) -> None:
@@ -157,10 +143,10 @@ def legend_of(solution: Solution, hertz: HertzSphere | None) -> list[Patch | Lin
     if hertz is not None:
         found.append(line("Hertz' pressure, smooth", BLACK, (0, (5, 2)), 0.8))
     found.append(line("maps: lines of the profiles", BLACK, (0, (4, 3)), 0.6))
-    if solution.plastic.any():
+    if solution.details.plastic.any():
         found.append(line("pressure map: edge of plastic zones", ORANGE, width=0.7))
     patches = [Patch(color=ORANGE, label="gap map: contact")]
-    if (solution.excluded & solution.contact).any():
+    if (solution.details.excluded & solution.contact).any():
         patches.append(Patch(color=PINK, label="shear map: no adhesive shear, r = β p"))
     return [*found, *patches]
 
@@ -208,7 +194,7 @@ def pressure_histogram(axes: Axes, solution: Solution, view: View) -> None:
     """Share of the contact by pressure; what is at the hardness is a line with its share."""
     import numpy as np
 
-    plastic = solution.plastic
+    plastic = solution.details.plastic
     elastic = solution.pressure[solution.contact & ~plastic] / view.pressure.size
     top = solution.max_pressure / view.pressure.size
     _histogram(axes, elastic, top, int(np.count_nonzero(solution.contact)), BLUE)

@@ -169,7 +169,7 @@ def pressure_map(axes: Axes, solution: Solution, view: View) -> None:
     values = view.cut(solution.pressure) / view.pressure.size
     image = _image(axes, values, view, "viridis", vmin=0.0)
     _bar(axes, image, f"pressure p ({view.pressure.name})")
-    plastic = view.cut(solution.plastic)
+    plastic = view.cut(solution.details.plastic)
     if plastic.any():
         outline(axes, plastic, view, ORANGE)
     sections(axes, solution, view)
@@ -181,13 +181,13 @@ def shear_map(axes: Axes, solution: Solution, view: View) -> None:
     values = view.cut(solution.traction) / unit.size
     image = _image(axes, values, view, "cividis", vmin=0.0)
     _bar(axes, image, f"shear r ({unit.name})")
-    excluded = view.cut(solution.excluded & solution.contact)
+    excluded = view.cut(solution.details.excluded & solution.contact)
     if excluded.any():
         _overlay(axes, excluded, view, PINK)
         outline(axes, excluded, view, PINK)  # single elements of a fine grid are too small to be seen
     if not solution.traction.any():
         axes.text(0.5, 0.5, "no friction", ha="center", va="center", transform=axes.transAxes)
-    _arrow(axes, solution.sliding_direction)
+    _arrow(axes, solution.details.sliding_direction)
 
 
 def gap_map(axes: Axes, solution: Solution, view: View) -> None:

@@ -221,7 +221,7 @@ def _with_budget(
     from verification.cli import budget
 
     found["budget"] = None
-    reason = "" if solution.certified else "the solution's certificate does not hold"
+    reason = "" if solution.details.certified else "the solution's certificate does not hold"
     if options.approach is not None:
         reason = "it is about the scene's load, and this is at a prescribed approach"
     if reason:

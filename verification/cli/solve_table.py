@@ -21,18 +21,6 @@ NEXT = {
     "NO_CONTACT": "nothing touches: prescribe a larger --approach, or leave it out to press with the load",
 }
 
-# attribute of Solution, name in the table, factor from SI to the unit shown, that unit
-QUANTITIES = (
-    ("friction_coefficient_corrected", "friction coefficient mu", 1.0, ""),
-    ("friction_coefficient", "mu, summed over elements", 1.0, ""),
-    ("contact_area", "contact area A", 1e6, "mm^2"),
-    ("contact_area_corrected", "A, perimeter-corrected", 1e6, "mm^2"),
-    ("max_pressure", "maximum pressure p_max", 1e-6, "MPa"),
-    ("approach", "approach", 1e6, "um"),
-    ("normal_force", "normal force N", 1.0, "N"),
-    ("friction_force_corrected", "friction force F", 1.0, "N"),
-    ("binormal_force", "binormal force Q", 1.0, "N"),
-)
 _RESIDUALS = {"gap": "complementarity gap", "law_violations": "law violations, elements"}
 
 
@@ -56,10 +44,11 @@ def document(solution: Solution, scene: str) -> dict[str, object]:
 
 def table(solution: Solution, scene: str) -> str:
     """Return the numbers, how well they converged, the terms not modelled, and the warnings."""
-    found = [_row(solution, *quantity) for quantity in QUANTITIES]
-    if solution.plastic_area:
-        name = f"plastic area, {solution.plastic_share:.1%} of A"
-        found.insert(3, _row(solution, "plastic_area", name, 1e6, "mm^2"))
+    from refimpl.solution.display import rows
+
+    numbers = [
+        [name, value, " ".join(rest), unit] for name, (value, *rest), unit in rows(solution, "command")
+    ]
     summary = solution.summary()
     certificate = [
         [_RESIDUALS.get(name, name.replace("_", " ")), f"{value:.2g}"]
@@ -73,8 +62,8 @@ def table(solution: Solution, scene: str) -> str:
     parts = [
         f"{scene}: {solution.grid} elements, method {summary['method']}, {summary['cost']['seconds']:.2f} s\n"
         + wrapped(NEXT.get(solution.status.name, ""), f"status: {solution.status.name}  "),
-        columns(found),
-        f"certificate, each residual within {solution.tolerance:g} (0 is exact):\n{columns(certificate)}",
+        columns(numbers),
+        f"certificate, each residual within {summary['tolerance']:g} (0 is exact):\n{columns(certificate)}",
         f"not modelled:\n{columns(not_modelled)}" if not_modelled else "",
         *(wrapped(w["text"], f"warning ({w['name']}): ") for w in summary["warnings"]),
     ]
@@ -84,19 +73,11 @@ def table(solution: Solution, scene: str) -> str:
 def not_usable(solution: Solution) -> list[str]:
     """Return the names of the numbers in the table whose bar exceeds half of their magnitude."""
     from refimpl.solution.display import verdict_on
+    from refimpl.solution.quantities import QUANTITIES
 
-    names = [attribute for attribute, *_ in QUANTITIES]
-    if solution.plan.includes("plastic"):
-        names.append("plastic_area")
-    return [name for name in names if verdict_on(solution, name)]
-
-
-def _row(solution: Solution, quantity: str, name: str, factor: float, unit: str) -> list[str]:
-    """Return a row of the table: value and bar with the digits that the bar leaves, and the verdict."""
-    from refimpl.solution.display import shown
-
-    value, *rest = shown(solution, quantity, factor)
-    return [name, value, " ".join(rest), unit]
+    shown = [name for name, quantity in QUANTITIES.items() if "command" in quantity.tables]
+    elastic = not solution.plan.includes("plastic")
+    return [n for n in shown if not (elastic and n.startswith("plastic")) and verdict_on(solution, n)]
 
 
 def _change(effect: Mapping[str, float]) -> str:

@@ -86,7 +86,7 @@ def _solved(kind: str, seed: int) -> dict[str, Any]:
             if M == REFERENCE:
                 found = []
             continue
-        found.append(asdict(solution.features))
+        found.append(asdict(solution.details.features))
     return {"kind": kind, "seed": seed, "grids": found, "exact": exact_numbers(one)}
 
 

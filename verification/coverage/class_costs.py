@@ -15,7 +15,7 @@ from typing import Any, Final
 import numpy as np
 
 import refimpl as rf
-from refimpl.accuracy.refinement import GRID_SIZES, Quantity
+from refimpl.accuracy.refinement import GRID_SIZES
 from refimpl.driver.options import Options
 from refimpl.driver.refined import forecast
 from refimpl.scene.discretise import Discretiser
@@ -37,7 +37,7 @@ from verification.framework.text_table import columns
 
 CORRECTED: Final = "friction_coefficient_corrected"
 SUMMED: Final = "friction_coefficient"
-ASKED: dict[Quantity, float] = {CORRECTED: 0.01, SUMMED: 0.01, "contact_area_corrected": 0.05}
+ASKED: dict[str, float] = {CORRECTED: 0.01, SUMMED: 0.01, "contact_area_corrected": 0.05}
 SIZES = [M for M in GRID_SIZES if M < REFERENCE]
 
 
@@ -58,7 +58,7 @@ def costs(one: rf.Scene, *, most: int = REFERENCE) -> list[dict[str, Any]]:
         refined = rf.solve(one, accuracy=accuracy, quantity=name, max_grid=most)
         met = refined.status is not rf.Status.ACCURACY_NOT_REACHED and refined.converged
         row: dict[str, Any] = {"number": name, "cheapest": cheapest, "met": met}
-        row["last"] = last = max(refined.problem.grid.shape)
+        row["last"] = last = max(refined.details.problem.grid.shape)
         row["work"] = rf.solve(one, grid=last).cost.point_logs if met else None
         row["cost"] = refined.cost.point_logs / single[cheapest].cost.point_logs if met and cheapest else None
         row["forecast"] = None if expected.refusal else max(expected.grid.shape)

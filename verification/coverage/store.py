@@ -107,7 +107,7 @@ def _solved(seed: int, M: int) -> GridSolve:
     begun = _begun(seed, M)
     return GridSolve(
         seed=seed,
-        result=solution.features,
+        result=solution.details.features,
         status=solution.status.value,
         worst=solution.certificate.largest,
         point_logs=solution.cost.point_logs,
@@ -133,7 +133,7 @@ def _opened(seed: int, M: int) -> rf.Solution:
 
 def _apart(one: rf.Solution, other: rf.Solution) -> float:
     """The largest relative difference of the numbers to be judged."""
-    names = judged_numbers(one.friction)
+    names = judged_numbers(one.details.friction)
     return max(abs(float(getattr(one, name)) / float(getattr(other, name)) - 1) for name in names)
 
 

@@ -219,7 +219,7 @@ def true_friction(scene: rf.Scene, load: float) -> float:
         solution = rf.solve(replace(scene, load=load), grid)
         if not solution.converged:
             raise ArithmeticError(f"the solve at {load:.4g} N ended as {solution.status.value}")
-        features.append(solution.features)
+        features.append(solution.details.features)
     return estimates(features)["friction_coefficient_corrected"].value
 
 

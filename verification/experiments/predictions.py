@@ -15,6 +15,7 @@ import refimpl as rf
 from refimpl.model.materials import Pair
 from refimpl.scene.parameters import parameters, with_parameter
 from refimpl.scene.scene_file import read_tolerances
+from refimpl.solution.quantities import error_bound
 from verification.exact.hertz import Sphere
 from verification.experiments.comparison import Point, measured, repeated
 
@@ -49,7 +50,7 @@ def press(scene: rf.Scene, load: float) -> rf.Solution:
 def increment(scene: rf.Scene, first: float, load: float) -> Stated:
     """Approach under a load beyond that under the first one (m)."""
     low, high = press(scene, first), press(scene, load)
-    return high.approach - low.approach, high.error("approach") + low.error("approach")
+    return high.approach - low.approach, error_bound(high, "approach") + error_bound(low, "approach")
 
 
 def ratio(scene: rf.Scene, first: float, loads: tuple[float, float]) -> Stated:
@@ -65,7 +66,7 @@ def exponent(scene: rf.Scene, loads: Sequence[float]) -> Stated:
     x = np.log(loads) - np.mean(np.log(loads))
     weights = x / np.sum(x**2)
     mu = np.array([getattr(one, name) for one in found])
-    off = np.array([one.error(name) for one in found]) / mu
+    off = np.array([error_bound(one, name) for one in found]) / mu
     return float(weights @ np.log(mu)), float(np.abs(weights) @ off)
 
 

@@ -11,6 +11,8 @@ import sys
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+import refimpl
+
 ROOT = Path(__file__).resolve().parents[2]
 DISTRIBUTION = "rough-friction"
 PACKAGES = ("numpy", "scipy", "ducc0", "scikit-fem", "meshio", "mpmath", "python-flint", "SurfaceTopography",
@@ -20,7 +22,8 @@ PACKAGES = ("numpy", "scipy", "ducc0", "scikit-fem", "meshio", "mpmath", "python
 def versions() -> dict[str, str | None]:
     """Version of Python, of this package and of each dependency; None for one that is not installed."""
     found: dict[str, str | None] = {"python": platform.python_version()}
-    for package in (DISTRIBUTION, *PACKAGES):
+    found[DISTRIBUTION] = refimpl.__version__
+    for package in PACKAGES:
         try:
             found[package] = version(package)
         except PackageNotFoundError:

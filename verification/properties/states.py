@@ -32,7 +32,7 @@ def from_first_contact(sample: Sample, solution: rf.Solution) -> float:
 
 def displacement(sample: Sample, solution: rf.Solution) -> Array:
     """Normal displacement of both bodies (m), from the returned surfaces."""
-    return solution.separation - sample.gap + from_first_contact(sample, solution)
+    return solution.details.separation - sample.gap + from_first_contact(sample, solution)
 
 
 def compliances(scene: rf.Scene) -> tuple[float, float]:
@@ -46,7 +46,7 @@ def compliances(scene: rf.Scene) -> tuple[float, float]:
 
 def slope_along_and_across(sample: Sample, solution: rf.Solution) -> tuple[Array, Array]:
     """Tangents of theta_x and theta_y of the mean of the returned surfaces, by differences written out."""
-    z = (solution.surface_lower + solution.surface_upper) / 2
+    z = np.add(*solution.surfaces) / 2
     (n, m), (dx, dy) = sample.shape, sample.grid.spacings
     d = np.zeros((2, n, m))
     for i, j in np.ndindex(n, m):
@@ -57,7 +57,7 @@ def slope_along_and_across(sample: Sample, solution: rf.Solution) -> tuple[Array
             i0, i1, j0, j1 = max(i - 1, 0), min(i + 1, n - 1), max(j - 1, 0), min(j + 1, m - 1)
             d[0, i, j] = (z[i1, j] - z[i0, j]) / ((i1 - i0) * dx)
             d[1, i, j] = (z[i, j1] - z[i, j0]) / ((j1 - j0) * dy)
-    cos, sin = math.cos(solution.sliding_direction), math.sin(solution.sliding_direction)
+    cos, sin = math.cos(solution.details.sliding_direction), math.sin(solution.details.sliding_direction)
     return cos * d[0] + sin * d[1], cos * d[1] - sin * d[0]
 
 
@@ -74,7 +74,9 @@ def local_friction_law(solver: Solver, sample: Sample) -> None:
     """Eq. (1), to the last bit but one."""
     solution, friction = solved(solver, sample), sample.scene.friction
     expected = np.where(solution.pressure > 0, friction.tau + friction.beta * solution.pressure, 0.0)
-    expected[solution.excluded] -= np.where(solution.pressure > 0, friction.tau, 0.0)[solution.excluded]
+    expected[solution.details.excluded] -= np.where(solution.pressure > 0, friction.tau, 0.0)[
+        solution.details.excluded
+    ]
     np.testing.assert_allclose(solution.traction, expected, rtol=4e-16, atol=1e-15 * friction.tau)
 
 
@@ -174,7 +176,7 @@ def agrees_with_the_dense_reference(solver: Solver, sample: Sample) -> None:
     reference = rf.solve(sample.scene, sample.shape, method="dense", tolerance=1e-12)
     solution = solved(solver, sample)
     same_pressure(solution, reference, sample)
-    require(np.array_equal(solution.excluded, reference.excluded))
+    require(np.array_equal(solution.details.excluded, reference.details.excluded))
 
 
 def same_pressure(one: rf.Solution, other: rf.Solution, sample: Sample) -> None:

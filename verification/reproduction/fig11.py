@@ -54,8 +54,8 @@ def samples(realisation: int, grid: int) -> tuple[Array, Array, Array, Array]:
     return (
         lower[nominal] * 1e6,
         slope[nominal],
-        found.surface_lower[found.contact] * 1e6,
-        np.degrees(found.theta_x[found.contact]),
+        found.surfaces[0][found.contact] * 1e6,
+        np.degrees(found.slopes.theta_x[found.contact]),
     )
 
 

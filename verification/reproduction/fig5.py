@@ -36,7 +36,7 @@ def profiles(grid: int) -> Profiles:
     contact = found.contact
     inner = np.zeros_like(contact)
     inner[1:-1, 1:-1] = contact[2:, 1:-1] & contact[:-2, 1:-1] & contact[1:-1, 2:] & contact[1:-1, :-2]
-    lawful = contact & ~inner & ~found.excluded
+    lawful = contact & ~inner & ~found.details.excluded
     return Profiles(
         x=x,
         pressure=(found.pressure[:, middle], found.pressure[middle]),

@@ -42,15 +42,15 @@ def section(grid: int) -> Section:
     without = rf.solve(rough(FLAT_RMS, BALL_RMS, friction=NO_FRICTION), grid)
     lower, upper = scene.heights(with_friction.grid)
     upper = upper - float((upper - lower).min())  # first contact
-    displacement = lower - with_friction.surface_lower
+    displacement = lower - with_friction.surfaces[0]
     middle = grid // 2
     contact = with_friction.contact
-    change = np.abs(with_friction.surface_lower - without.surface_lower)
+    change = np.abs(with_friction.surfaces[0] - without.surfaces[0])
     return Section(
         x=with_friction.grid.x - scene.lengths[0] / 2,
         before=(lower[:, middle], upper[:, middle]),
-        deformed=(with_friction.surface_lower[:, middle], with_friction.surface_upper[:, middle]),
-        frictionless=without.surface_lower[:, middle],
+        deformed=(with_friction.surfaces[0][:, middle], with_friction.surfaces[1][:, middle]),
+        frictionless=without.surfaces[0][:, middle],
         mean_plane=-displacement[:, middle],
         difference=float(change[contact].max()),
         approach=with_friction.approach,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from importlib.metadata import version
 
 import refimpl as rf
 from refimpl.planning.plan import Method
@@ -35,7 +34,7 @@ class Own:
     @property
     def version(self) -> str:
         """Name and version of the package."""
-        return f"refimpl {version('rough-friction')}"
+        return f"refimpl {rf.__version__}"
 
     def __call__(self, problem: ContactProblem) -> Answer:
         """The pressures; converged when the solution is certified.

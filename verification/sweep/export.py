@@ -11,14 +11,14 @@ from typing import Any
 
 from refimpl.errors import InputError
 from refimpl.scene.key_texts import FRICTION, MATERIAL, SCENE, SURFACES
-from refimpl.solution.record import UNITS as OF_NUMBERS
+from refimpl.solution.quantities import QUANTITIES
 from verification.framework.files import replacing, write_text
 from verification.sweep.run import Row
 from verification.sweep.store import COLUMNS
 
 UNITS = {
     **{name: unit for name, (unit, _) in (SCENE | FRICTION).items()},
-    **{name: "" if unit == "1" else unit for name, unit in OF_NUMBERS.items()},
+    **{name: "" if quantity.unit == "1" else quantity.unit for name, quantity in QUANTITIES.items()},
     **dict.fromkeys(("upper_rms", "lower_rms", "correlation_length"), "m"),
     "elastic_friction": "N",
     "seconds": "s",

@@ -18,7 +18,7 @@ import numpy as np
 import refimpl as rf
 from refimpl.scene.scene_file import scene_from_dict
 from refimpl.solution.limits import ModelWarning, roughness_slope
-from refimpl.solution.solution import REPORTED
+from refimpl.solution.quantities import QUANTITIES
 from verification.framework.threads import limited_to_one_thread
 
 COORDINATES = (
@@ -30,34 +30,18 @@ grid where an accuracy is requested. ``parameters`` is the JSON text of the numb
 that the study varies by their full names.
 """
 
-OUTCOMES = (
-    "status", "friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure",
-    "approach", "normal_force", "friction_force", "elastic_friction", "binormal_force", "residual",
-    "friction_coefficient_cycle", "contact_area_cycle", "border_elements",
-    "friction_coefficient_error", "contact_area_error", "contact_area_corrected_error", "max_pressure_error",
-    "approach_error", "normal_force_error", "friction_force_error", "binormal_force_error",
-    "plastic_area", "plastic_area_error", "plastic_share", "plasticity_index",
-    "contact_area_share", "mean_pressure", "mean_gap", "elements_x", "elements_y", "warnings",
-    "friction_coefficient_corrected", "friction_coefficient_corrected_error",
-    "friction_force_corrected", "friction_force_corrected_error",
+_OF_A_RUN = (
+    "elastic_friction", "residual", "friction_coefficient_cycle", "contact_area_cycle", "border_elements",
+    "plasticity_index", "elements_x", "elements_y", "warnings",
 )  # fmt: skip
-"""What a run gives. ``..._corrected`` is without the mean excess of the contact edge, and
-``friction_coefficient`` is the sum over elements, Eq. (4). ``elastic_friction`` is
-``sum f sin(theta_x) cos(theta_y) dA`` (N), the part of Eq. (3) that is not local friction; ``residual`` the
-certificate's largest; ``..._cycle`` what an alternating contact edge under tau leaves open;
-``border_elements`` the elements in contact on the domain's border; ``..._error`` a number's error bar (inf
-where unbounded); ``plasticity_index`` Eq. (12)'s, of the sampled slopes, None without a hardness;
-``elements_x``, ``elements_y`` the grid solved on; ``warnings`` the names of the limits exceeded, separated by
-"; ".
+OUTCOMES = ("status", *QUANTITIES, *(f"{name}_error" for name in QUANTITIES), *_OF_A_RUN)
+"""What a run gives: the numbers of `refimpl.Solution`, and ``..._error``, their bars: inf where unbounded,
+None without a rule. ``elastic_friction`` is ``sum f sin(theta_x) cos(theta_y) dA`` (N), the part of Eq. (3)
+that is not local friction; ``residual`` the certificate's largest; ``..._cycle`` what an alternating contact
+edge under tau leaves open; ``border_elements`` the elements in contact on the domain's border;
+``plasticity_index`` Eq. (12)'s, of the sampled slopes, None without a hardness; ``elements_x``,
+``elements_y`` the grid solved on; ``warnings`` the names of the limits exceeded, separated by "; ".
 """
-
-OF_SOLUTION = (
-    "friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure", "approach",
-    "normal_force", "friction_force", "binormal_force", "friction_coefficient_corrected",
-    "friction_force_corrected", "plastic_area", "plastic_share", "contact_area_share", "mean_pressure",
-    "mean_gap",
-)  # fmt: skip
-"""Outcomes that are attributes of `refimpl.Solution`."""
 
 LIBRARIES = ("numpy", "scipy", "ducc0")
 """Packages whose version may change the last digits of a run."""
@@ -138,17 +122,17 @@ def execute(inputs: Mapping[str, Any]) -> tuple[Row, float]:
 
 def outcome(solution: rf.Solution, scene: rf.Scene) -> Row:
     """The row of a solution of a scene."""
-    slopes, contact, pair = solution.slopes, solution.contact, solution.problem.pair
+    slopes, contact, pair = solution.slopes, solution.contact, solution.details.problem.pair
     elastic = float(np.sum(solution.pressure * slopes.sin_x * slopes.cos_y)) * solution.grid.element_area
     index = None
     if pair.softer_hardness is not None:
         index = pair.reduced_modulus / pair.softer_hardness * roughness_slope(scene, solution.grid)
     return {
         "status": solution.status.value,
-        **{name: getattr(solution, name) for name in OF_SOLUTION},
-        **{f"{name}_error": solution.error(name) for name in REPORTED},
+        **{name: getattr(solution, name) for name in QUANTITIES},
+        **{f"{name}_error": solution.error(name) for name in QUANTITIES},
         **{
-            f"{name}_cycle": float(solution.uncertainty.get(name, {}).get("active set", 0.0))
+            f"{name}_cycle": solution.uncertainty.get(name, {}).get("active set", 0.0)
             for name in ("friction_coefficient", "contact_area")
         },
         "elastic_friction": elastic,

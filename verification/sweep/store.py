@@ -26,7 +26,7 @@ from refimpl.errors import InputError
 from verification.sweep.run import COORDINATES, OUTCOMES, Row, Run
 
 APPLICATION_ID = 0x52465357  # "RFSW": says whose file this is
-VERSION = 4
+VERSION = 5
 COLUMNS = ("key", *COORDINATES, *OUTCOMES)
 BUSY_SECONDS = 5.0  # for another program to end its transaction
 _OURS = [APPLICATION_ID, VERSION]

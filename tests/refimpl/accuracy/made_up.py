@@ -11,7 +11,7 @@ from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.peak import NO_PEAK, Peak
 from refimpl.grid import Grid
 from refimpl.model.forces import EDGE_SHARE
-from refimpl.solution.solution import REPORTED
+from refimpl.solution.quantities import REPORTED
 
 SIDE, RADIUS, DMU_DA = 1e-3, 2e-4, 4e4
 AREA_LIMIT, BETA, PEAK = math.pi * RADIUS**2, 0.1, 1e9

@@ -14,7 +14,7 @@ from refimpl.accuracy.contact_edge import EDGE_SIZE
 from refimpl.accuracy.iteration_error import CORRECTED, iteration_parts
 from refimpl.accuracy.refinement import FIRST_GRIDS
 from refimpl.solution.cost import total_cost
-from refimpl.solution.solution import REPORTED
+from refimpl.solution.quantities import REPORTED
 from tests.refimpl.states import state_of
 from verification.coverage.class_scenes import Wave
 from verification.exact.westergaard import Wave as Exact
@@ -58,7 +58,7 @@ def test_the_cost_is_that_of_all_grids() -> None:
     solved: list[rf.Solution] = []
     for M in sizes:
         start = solved[-1] if solved else None
-        solved.append(rf.solve(scene, M, **words, start=start, tolerance=found.tolerance))
+        solved.append(rf.solve(scene, M, **words, start=start, tolerance=found.details.tolerance))
     assert np.array_equal(found.pressure, solved[-1].pressure)
     expected = total_cost(solution.cost for solution in solved)
     assert found.cost.applications == expected.applications
@@ -109,11 +109,14 @@ def test_a_looser_certificate_has_a_larger_iteration_part() -> None:
     loose, tight = (rf.solve(scene, grid=64, tolerance=t) for t in (1e-3, 1e-10))
     assert loose.certificate.largest > tight.certificate.largest
     state = state_of(loose)
-    parts, tighter = iteration_parts(loose.problem, state), iteration_parts(tight.problem, state_of(tight))
+    parts, tighter = (
+        iteration_parts(loose.details.problem, state),
+        iteration_parts(tight.details.problem, state_of(tight)),
+    )
     assert set(parts) == set(tighter) == set(REPORTED) - set(CORRECTED)
     # steep slopes can make a normal force negative at an approach
     pulled = replace(state, forces=state.forces._replace(normal=-state.forces.normal))
-    assert iteration_parts(loose.problem, pulled)["binormal_force"] == parts["binormal_force"]
+    assert iteration_parts(loose.details.problem, pulled)["binormal_force"] == parts["binormal_force"]
     for name in REPORTED:
         raw = CORRECTED.get(name, name)
         part = parts[raw]["iteration"]
@@ -210,7 +213,7 @@ def test_an_accuracy_does_not_end_above_the_pitch_of_the_data() -> None:
 def test_limits_of_a_refinement_end_it_with_the_best_grid_within_them() -> None:
     s = rf.solve(MAP, accuracy=1e-4, max_grid=96)
     assert s.status is rf.Status.ACCURACY_NOT_REACHED
-    assert s.certified
+    assert s.details.certified
     assert max(s.grid.shape) <= 96
 
 
@@ -254,4 +257,4 @@ def test_the_gap_is_nowhere_negative_beyond_the_penetration() -> None:
         allowed = (s.certificate.penetration + 1e-12) * s.approach
         assert s.gap.min() >= -allowed
         assert np.abs(s.gap[s.contact]).max() <= 1e-6 * s.approach
-        assert s.separation.min() < -1e-4 * s.approach
+        assert s.details.separation.min() < -1e-4 * s.approach

@@ -44,7 +44,7 @@ def test_against_hertz_errors_are_a_fifth_and_each_within_its_bar() -> None:
 
 def test_only_tau_acts_on_the_excess() -> None:
     s = rf.solve(ball(), 32)
-    share = TAU * s.features.excess / LOAD
+    share = TAU * s.details.features.excess / LOAD
     assert s.friction_coefficient_corrected == pytest.approx(s.friction_coefficient - share, rel=1e-12)
     assert s.friction_force_corrected == pytest.approx(s.friction_coefficient_corrected * LOAD, rel=1e-9)
     without = rf.solve(ball(law=rf.Friction(0.0, BETA)), 32)

@@ -19,7 +19,7 @@ from refimpl.model.certificate import Certificate, State
 from refimpl.model.forces import EDGE_SHARE, Forces
 from refimpl.model.problem import Problem, Terms
 from refimpl.scene.discretise import discretise
-from refimpl.solution.solution import REPORTED
+from refimpl.solution.quantities import REPORTED
 from tests.refimpl.accuracy.made_up import AREA_LIMIT, BETA, DMU_DA, PEAK, SIDE, made_up, sloped
 from tests.refimpl.states import state_of
 
@@ -106,7 +106,7 @@ def test_bars_hold_against_hertz() -> None:
     scene = rf.read_scene("hertz")
     a = (3 * scene.load * 0.14 / (4 * scene.materials.reduced_modulus)) ** (1 / 3)
     area, peak = math.pi * a**2, 1.5 * scene.load / (math.pi * a**2)
-    found = {M: rf.solve(scene, M).features for M in (*FIRST_GRIDS, *HERTZ_GRIDS)}
+    found = {M: rf.solve(scene, M).details.features for M in (*FIRST_GRIDS, *HERTZ_GRIDS)}
     shares = []
     for M in HERTZ_GRIDS:
         results = [found[N] for N in (*FIRST_GRIDS, M)]
@@ -141,17 +141,17 @@ def test_contact_is_pressed_in_by_four_fifths_of_a_hertz_approach(periodic: bool
     """Less, where contact repeats, what a square lattice of point forces and its mean do at one of them."""
     lattice = 3.9003 * LOAD / (math.pi * MODULUS * SIDE) if periodic else 0.0
     found = rf.solve(ball(SOFT, 0.0, periodic), grid=64, coupled=False)
-    assert found.features.depth == pytest.approx(0.8 * CONTACT**2 / RADIUS - lattice, rel=0.03)
+    assert found.details.features.depth == pytest.approx(0.8 * CONTACT**2 / RADIUS - lattice, rel=0.03)
 
 
 def test_shear_to_normal_is_the_ratio_of_cerrutis_displacement_to_loves() -> None:
     found = rf.solve(ball(SOFT), grid=48)
-    pair = found.problem.pair
+    pair = found.details.problem.pair
     ratio = abs(pair.shear_compliance) / pair.normal_compliance
-    assert found.features.shear_to_normal_ratio == pytest.approx(
+    assert found.details.features.shear_to_normal_ratio == pytest.approx(
         ratio * 2e6 * found.contact_area / LOAD, rel=1e-12
     )
-    assert found.features.shear_to_normal_ratio > 0.1
+    assert found.details.features.shear_to_normal_ratio > 0.1
 
 
 @pytest.mark.parametrize(
@@ -161,7 +161,7 @@ def test_twins_no_tau_and_no_coupling_displace_nothing(
     lower: rf.Material, tau: float, coupled: bool | None
 ) -> None:
     found = rf.solve(ball(lower, tau), grid=32, coupled=coupled)
-    assert found.features.shear_to_normal_ratio == 0.0
+    assert found.details.features.shear_to_normal_ratio == 0.0
 
 
 def test_tau_on_the_edge_widens_the_approach_under_a_load_alone() -> None:
@@ -201,7 +201,7 @@ def made(residual: float = 0.0, violations: int = 0, **changes: object) -> tuple
     """A state on 4 x 4 elements with one residual, and other fields as given."""
     solution = rf.solve(SCENE, 4, oblique=False, coupled=False)
     certificate = Certificate(residual, 0.0, 0.0, 0.0, 0.0, law_violations=violations)
-    problem = discretise(SCENE, SCENE.grid(4), solution.problem.terms)
+    problem = discretise(SCENE, SCENE.grid(4), solution.details.problem.terms)
     return problem, replace(state_of(solution), certificate=certificate, **changes)
 
 

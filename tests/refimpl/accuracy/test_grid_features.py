@@ -28,7 +28,7 @@ from refimpl.model.forces import EDGE_SHARE
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 from refimpl.scene.discretise import discretise
-from refimpl.solution.solution import REPORTED
+from refimpl.solution.quantities import REPORTED
 
 STEEL, POLYMER = rf.Material(E=200e9, nu=0.3), rf.Material(E=2.5e9, nu=0.38)
 BALL = rf.Scene(
@@ -206,7 +206,7 @@ def pressed(
         sliding_direction=direction,
         sliding_offset=share * SIDE / 32,
     )
-    return rf.solve(scene, M, approach=approach, oblique=False, tolerance=1e-8).features
+    return rf.solve(scene, M, approach=approach, oblique=False, tolerance=1e-8).details.features
 
 
 def test_bars_at_a_prescribed_approach_hold_against_hertz() -> None:

@@ -139,7 +139,7 @@ def test_a_plastic_area_that_no_element_shows_is_bounded_by_the_pressures_bar() 
     assert near.plastic_area == far.plastic_area == 0
     assert near.error("plastic_area") >= near.grid.element_area
     assert far.error("plastic_area") < near.grid.element_area
-    without_cap = rf.solve(near.evidence.scene, 24, plastic=False)
+    without_cap = rf.solve(near.details.evidence.scene, 24, plastic=False)
     assert without_cap.error("plastic_area") >= near.error("plastic_area")
 
 

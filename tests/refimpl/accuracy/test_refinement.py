@@ -19,7 +19,7 @@ from refimpl.accuracy.refinement import (
     refine_until,
     relative_bound,
 )
-from refimpl.solution.solution import REPORTED
+from refimpl.solution.quantities import REPORTED
 from tests.refimpl.accuracy.made_up import AREA_LIMIT, PEAK, made_up
 
 

@@ -14,7 +14,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Array
-from refimpl.solution.solution import REPORTED
+from refimpl.solution.quantities import REPORTED
 from verification.coverage.scenes import random_scene
 
 M = 24

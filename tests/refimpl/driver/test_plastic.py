@@ -92,7 +92,7 @@ def test_indentation_is_where_pressures_are_capped() -> None:
     assert s.plastic_indentation[at_cap].min() >= 0
     K = s.slopes.cosine_product
     # with the indentation the bodies fit: v - approach + w_p / K vanishes where pressures are capped
-    assert np.abs(s.clearance + s.plastic_indentation / K)[at_cap].max() < 1e-12
+    assert np.abs(s.details.clearance + s.plastic_indentation / K)[at_cap].max() < 1e-12
 
 
 def test_a_hardness_as_is() -> None:
@@ -149,12 +149,12 @@ def test_the_scene_and_its_file_choose(tmp_path: Path) -> None:
 
 def test_bounds_of_capped_states() -> None:
     """On slopes under a load they have none; a cap that is not reached changes nothing."""
-    assert rf.solve(ROUGH, 24, oblique=True).bounds.unproven == NO_BOUND_PLASTIC
+    assert rf.solve(ROUGH, 24, oblique=True).details.bounds.unproven == NO_BOUND_PLASTIC
     elastic = rf.solve(hard(None), 24, oblique=False)
     wide = rf.solve(hard(2 * elastic.max_pressure), 24, oblique=False, plastic=True)
-    assert wide.bounds.energy == pytest.approx(elastic.bounds.energy, rel=0.5)
+    assert wide.details.bounds.energy == pytest.approx(elastic.details.bounds.energy, rel=0.5)
     close = rf.solve(hard(None), 24, oblique=False, tolerance=1e-12).max_pressure * (1 + 1e-12)
-    assert rf.solve(hard(close), 24, oblique=False, plastic=True).bounds.unproven == NO_BOUND_PLASTIC
+    assert rf.solve(hard(close), 24, oblique=False, plastic=True).details.bounds.unproven == NO_BOUND_PLASTIC
 
 
 def test_model_form_of_an_elastic_solution_beyond_the_hardness() -> None:

@@ -56,7 +56,7 @@ def test_an_approach_that_leaves_the_surfaces_apart(method: str, approach: float
     assert s.status is rf.Status.NO_CONTACT
     assert s.normal_force == s.friction_force == s.contact_area == s.max_pressure == 0
     assert math.isnan(s.friction_coefficient)
-    assert s.separation.min() == pytest.approx(-approach, abs=1e-18)
+    assert s.details.separation.min() == pytest.approx(-approach, abs=1e-18)
 
 
 @METHODS
@@ -69,9 +69,9 @@ def test_periodic_planes_too_far_apart(method: str) -> None:
 
 def test_slope_angles_are_of_the_returned_surface() -> None:
     s = rf.solve(replace(SMOOTH, sliding_direction=0.7), 24)
-    dx, dy = np.gradient((s.surface_lower + s.surface_upper) / 2, *s.grid.spacings)
-    np.testing.assert_allclose(np.tan(s.theta_x), math.cos(0.7) * dx + math.sin(0.7) * dy, atol=1e-8)
-    np.testing.assert_allclose(np.tan(s.theta_y), math.cos(0.7) * dy - math.sin(0.7) * dx, atol=1e-8)
+    dx, dy = np.gradient(np.add(*s.surfaces) / 2, *s.grid.spacings)
+    np.testing.assert_allclose(np.tan(s.slopes.theta_x), math.cos(0.7) * dx + math.sin(0.7) * dy, atol=1e-8)
+    np.testing.assert_allclose(np.tan(s.slopes.theta_y), math.cos(0.7) * dy - math.sin(0.7) * dx, atol=1e-8)
 
 
 @pytest.mark.parametrize("limit", [0, 2])
@@ -80,7 +80,7 @@ def test_a_starved_solver_never_claims_convergence(limit: int, monkeypatch: pyte
     scene = rf.read_scene("metal-polymer")
     s = rf.solve(scene, 24)
     assert s.status in (rf.Status.STAGNATED, rf.Status.ITERATION_LIMIT)
-    assert not s.certificate.satisfies(s.tolerance)
+    assert not s.certificate.satisfies(s.details.tolerance)
 
 
 def test_a_tolerance_below_rounding_is_not_claimed() -> None:

@@ -61,7 +61,7 @@ def test_whatever_a_solve_starts_from(sample: Sample, share: float) -> None:
     assert begun.converged
     assert afresh.converged
     same_pressure(begun, afresh, sample)
-    assert np.array_equal(begun.excluded, afresh.excluded)
+    assert np.array_equal(begun.details.excluded, afresh.details.excluded)
 
 
 @pytest.mark.parametrize("share", [0.3, 1.0])
@@ -130,5 +130,5 @@ def test_an_accuracy_climbs_from_answer_to_answer() -> None:
 def test_a_guess_on_a_periodic_grid_counts_from_where_its_heights_do() -> None:
     """``v - h`` without slopes is the displacement, which has no mean on a periodic domain."""
     start = rf.solve(WAVY, 16, oblique=False)
-    guess = initial_guess(start.problem, start.pressure, start.clearance, start.approach)
+    guess = initial_guess(start.details.problem, start.pressure, start.details.clearance, start.approach)
     assert abs(guess.displacement.mean()) < 1e-9 * np.abs(guess.displacement).max()

@@ -194,8 +194,8 @@ HARD = replace(
 
 
 def certified(s: rf.Solution, pressure: np.ndarray) -> State:
-    operator = DenseInfluence(s.grid, s.sliding_direction)
-    return certify(s.problem, operator, pressure, s.traction, s.slopes, s.plastic_indentation)
+    operator = DenseInfluence(s.grid, s.details.sliding_direction)
+    return certify(s.details.problem, operator, pressure, s.traction, s.slopes, s.plastic_indentation)
 
 
 @pytest.fixture(scope="module")
@@ -208,7 +208,7 @@ def solution() -> rf.Solution:
 def test_an_element_that_bears_too_little_counts_with_its_room_below_the_cap(solution: rf.Solution) -> None:
     """At d fixed, ``(H - f)(d - v)`` of the one element alone, over the energy, is less than the gap."""
     s = rf.solve(HARD, 16, method="dense", oblique=False, approach=solution.approach)
-    pressure, H = s.pressure.copy(), s.problem.cap
+    pressure, H = s.pressure.copy(), s.details.problem.cap
     deepest = np.unravel_index(np.argmax(s.plastic_indentation), pressure.shape)
     assert pressure[deepest] == H
     pressure[deepest] = 0.5 * H
@@ -268,11 +268,11 @@ def test_a_punch_that_yields_everywhere_is_solved_at_an_approach(method: Method,
 
 def test_slopes_without_the_indentation_are_not_those_of_the_common_surface() -> None:
     s = rf.solve(HARD, 16, method="dense", oblique=True)
-    operator = DenseInfluence(s.grid, s.sliding_direction)
-    lower, upper = s.problem.displacements(operator, s.pressure, s.traction, s.slopes)
-    elastic = s.problem.slopes(lower, upper, None)
-    with_it = certify(s.problem, operator, s.pressure, s.traction, s.slopes, s.plastic_indentation)
-    without = certify(s.problem, operator, s.pressure, s.traction, elastic, None)
+    operator = DenseInfluence(s.grid, s.details.sliding_direction)
+    lower, upper = s.details.problem.displacements(operator, s.pressure, s.traction, s.slopes)
+    elastic = s.details.problem.slopes(lower, upper, None)
+    with_it = certify(s.details.problem, operator, s.pressure, s.traction, s.slopes, s.plastic_indentation)
+    without = certify(s.details.problem, operator, s.pressure, s.traction, elastic, None)
     assert with_it.certificate.slope < 1e-10
     assert without.certificate.slope > 1e-5
     # the indented surfaces touch: an element's slopes count in Eq. (6), by 1e-6 of 1 um and more here

@@ -20,7 +20,7 @@ from refimpl.planning.expected_contact import expected_contact, solved_contact
 from refimpl.planning.plan import Plan, make_plan, memory_of
 from refimpl.planning.term_effects import Scales
 from refimpl.scene.discretise import discretise
-from refimpl.solution.solution import REPORTED
+from refimpl.solution.quantities import REPORTED
 
 STEEL, COPPER, RUBBER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30), rf.Material(10e6, 0.5)
 SMOOTH = rf.read_scene("table1-smooth")
@@ -111,7 +111,7 @@ def test_hertz_is_expected(grid: Grid) -> None:
 def test_a_rough_contact_is_expected_within_a_factor_of_two() -> None:
     s = rf.solve(ROUGH, 128)
     expected = s.plan.contact
-    found = solved_contact(s.problem, s.pressure, expected)
+    found = solved_contact(s.details.problem, s.pressure, expected)
     assert 0.5 < expected.elements / found.elements < 2
     assert 0.5 < expected.pressure / found.pressure < 2
     assert 0.5 < expected.slope_squared / found.slope_squared < 2
@@ -140,7 +140,7 @@ def test_shear_tilts_the_common_surface_of_twins() -> None:
     strong = replace(TWINS, friction=rf.Friction(beta=0.5), load=7000.0, side=6e-3)
     tilted, level = (rf.solve(strong, 64, tilted=word) for word in (True, False))
     lost = level.friction_coefficient - tilted.friction_coefficient
-    scales = Scales(tilted.plan.contact, tilted.problem.pair, strong.friction)
+    scales = Scales(tilted.plan.contact, tilted.details.problem.pair, strong.friction)
     assert "shear" in tilted.cost.applications
     assert "shear" not in level.cost.applications
     assert 0 < lost <= term_effects.tilted(scales).friction * scales.mu < 3 * lost
@@ -151,10 +151,12 @@ def test_accuracy_neglects_terms_and_says_so() -> None:
     assert s.plan.neglected
     assert "neglected" in s.uncertainty["friction_coefficient"]
     assert 0 < s.uncertainty["friction_coefficient"]["neglected"] <= 0.05 * s.friction_coefficient
-    full = rf.solve(SMOOTH, max(s.grid.shape), tolerance=s.tolerance, oblique=True, coupled=True, tilted=True)
+    full = rf.solve(
+        SMOOTH, max(s.grid.shape), tolerance=s.details.tolerance, oblique=True, coupled=True, tilted=True
+    )
     change = abs(s.friction_coefficient - full.friction_coefficient)
     assert change <= s.uncertainty["friction_coefficient"]["neglected"]
-    assert set(s.neglected) == set(s.plan.neglected)
+    assert set(s.details.neglected) == set(s.plan.neglected)
 
 
 def test_terms_that_turn_out_to_matter_are_restored(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -68,16 +68,6 @@ def test_heights_of_another_shape_or_kind_are_refused(z: object, monkeypatch: py
         scene().heights(scene().grid((3, 2)))
 
 
-def test_the_former_name_works_for_one_release() -> None:
-    with pytest.warns(DeprecationWarning, match="Old: _sample is now heights_on"):
-
-        class Old(rf.Surface):
-            def _sample(self, grid: Grid, offset: tuple[float, float]) -> Array:
-                return grid.zeros + offset[0]
-
-    assert Old().heights(Grid((2, 3), SIZE), (5.0, 0.0)).tolist() == [[5.0] * 3] * 2  # type: ignore[abstract]  # old
-
-
 @pytest.mark.parametrize("part", ["surface", "law"])
 def test_a_scene_file_has_neither(part: str) -> None:
     own = scene(Limited()) if part == "law" else scene()
@@ -94,7 +84,7 @@ def test_a_law_with_a_limit_is_solved_corrected_and_summarised() -> None:
     assert most * s.contact_area > s.friction_force > 0.3e6 * s.contact_area
     np.testing.assert_array_equal(s.contact, papers.contact)
     taken_off = s.friction_coefficient - s.friction_coefficient_corrected
-    assert taken_off == pytest.approx(papers.features.dmu_dA * s.features.excess, rel=1e-6)
+    assert taken_off == pytest.approx(papers.details.features.dmu_dA * s.details.features.excess, rel=1e-6)
     assert (
         json.loads(json.dumps(s.summary(), allow_nan=False))["friction_coefficient"] == s.friction_coefficient
     )

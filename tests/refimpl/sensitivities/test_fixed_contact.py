@@ -21,7 +21,7 @@ M = 48
 
 def fixed_contact(scene: rf.Scene) -> FixedContact:
     s = rf.solve(scene, M)
-    return FixedContact(s.problem, s.pressure, s.contact & ~s.excluded, s.slopes)
+    return FixedContact(s.details.problem, s.pressure, s.contact & ~s.details.excluded, s.slopes)
 
 
 def change(fixed: FixedContact) -> Array:
@@ -81,7 +81,7 @@ def test_the_answer_to_the_load_is_that_of_two_solves_on_rectangles_as_well(grid
 def with_contact(contact: Mask, pressure: Array, *, periodic: bool = False) -> FixedContact:
     """A fixed contact with another set and other pressures."""
     s = rf.solve(replace(rf.read_scene("table1-rough"), periodic=periodic), 16)
-    fixed = copy(FixedContact(s.problem, s.pressure, s.contact, s.slopes))
+    fixed = copy(FixedContact(s.details.problem, s.pressure, s.contact, s.slopes))
     fixed.contact, fixed.pressure = contact, np.where(contact, pressure, 0.0)
     return fixed
 

@@ -116,7 +116,7 @@ def test_parts_of_every_number(approach: float | None) -> None:
         {"normal_force": 0.8 * half, "friction_coefficient": 0.8 * half, "contact_area": 2 * half,
          "max_pressure": 0.8 * half}
     )  # fmt: skip
-    sunk = solution.approach + solution.problem.datum
+    sunk = solution.approach + solution.details.problem.datum
     assert found.second_order["approach"] == pytest.approx(0.4 * half * sunk)
     assert found.second_order["binormal_force"] == pytest.approx(0.8 * half * solution.friction_force)
 
@@ -132,7 +132,7 @@ def made_up(first: float, second: float, strain: float) -> HalfSpaceError:
 
 SOLVED: Any = SimpleNamespace(
     friction_coefficient=0.5, contact_area=2.0, max_pressure=7.0, approach=-1.0, normal_force=3.0,
-    problem=SimpleNamespace(datum=4.0), contact=None,
+    details=SimpleNamespace(problem=SimpleNamespace(datum=4.0)), contact=None,
 )  # fmt: skip
 
 

@@ -20,6 +20,7 @@ from refimpl.sensitivities.sensitivity import (
     grid_sensitivity,
     sensitivity,
 )
+from tests.changed import changed
 
 STEEL, POLYMER = rf.Material(E=200e9, nu=0.3), rf.Material(E=2.5e9, nu=0.38)
 M, TIGHT = 48, 1e-11
@@ -121,13 +122,6 @@ def test_stresses_scale_together(adhesive: Sensitivity) -> None:
     ):
         # smooth numbers to GMRES's 1e-6; the area through the edge's motion, which is linear in the answer
         assert sum(adhesive.relative(number, name) for name in stresses) == pytest.approx(power, abs=2e-4)
-
-
-def test_former_names_are_taken_for_the_corrected_numbers(adhesive: Sensitivity) -> None:
-    for name in NUMBERS[:2]:
-        with pytest.warns(DeprecationWarning, match=name):
-            found = adhesive.relative(name.removesuffix("_corrected"), "load")
-        assert found == adhesive.relative(name, "load")
 
 
 def test_the_area_agrees_with_wide_differences_within_its_scatter(adhesive: Sensitivity) -> None:
@@ -281,7 +275,7 @@ def test_states_without_derivatives_are_refused(solution: rf.Solution) -> None:
     for scene, state, words in (
         (ROUGH, rf.solve(ROUGH, 32, approach=solution.approach), "load of 70 N"),
         (ROUGH, rf.solve(ROUGH, 16, approach=-1e-6), "contact"),
-        (ROUGH, replace(solution, tolerance=1e-300), "certificate"),
+        (ROUGH, changed(solution, tolerance=1e-300), "certificate"),
         (flat_on_flat, rf.solve(flat_on_flat, 8), "solution = "),
         (ROUGH, 3, "solution = 3"),
         ("hertz", solution, "scene = "),
@@ -292,9 +286,9 @@ def test_states_without_derivatives_are_refused(solution: rf.Solution) -> None:
 
 def test_an_accuracy_that_was_not_reached_leaves_derivatives(solution: rf.Solution) -> None:
     """The state is as good as its certificate says, and what makes it uncertain is asked for all the more."""
-    reached = replace(solution, status=rf.Status.ITERATION_LIMIT)
+    reached = changed(solution, status=rf.Status.ITERATION_LIMIT)
     assert not reached.converged
-    assert reached.certified
+    assert reached.details.certified
     assert sensitivity(ROUGH, reached).derivatives == sensitivity(ROUGH, solution).derivatives
     again = rf.solve(ROUGH, 48, start=reached)
     assert again.converged
@@ -303,7 +297,7 @@ def test_an_accuracy_that_was_not_reached_leaves_derivatives(solution: rf.Soluti
 def test_solves_that_do_not_converge_are_not_compared(
     solution: rf.Solution, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ended = replace(solution, status=rf.Status.STAGNATED)
+    ended = changed(solution, status=rf.Status.STAGNATED)
     monkeypatch.setattr(
         sys.modules["refimpl.sensitivities.difference_quotients"], "solve", lambda *args, **options: ended
     )

@@ -19,6 +19,7 @@ from refimpl.grid import Grid
 from refimpl.solution import display
 from refimpl.solution.arrays import as_dataset, attributes_of, fields_of
 from refimpl.solution.patches import patches_of
+from tests.changed import changed
 
 
 @pytest.fixture(scope="module")
@@ -36,13 +37,15 @@ def oblong() -> rf.Solution:
 
 @pytest.mark.parametrize(
     "name",
-    ["pressure", "traction", "gap", "surface_lower", "surface_upper", "plastic_indentation", "excluded",
-     "slopes.tan_x", "slopes.tan_y", "state.displacement_lower", "state.v", "state.plastic"],
+    ["pressure", "traction", "gap", "plastic_indentation", "slopes.tan_x", "slopes.tan_y", "details.excluded",
+     "details.state.displacement_lower", "details.state.v", "details.state.plastic"],
 )  # fmt: skip
 def test_arrays_are_read_only(name: str, rough: rf.Solution) -> None:
     """A solution is its certificate's, and a start that was changed would be none."""
     with pytest.raises(ValueError, match="read-only"):
         attrgetter(name)(rough)[0, 0] = 1
+    for surface in rough.surfaces:
+        assert not surface.flags.writeable
 
 
 def test_patches_by_hand() -> None:
@@ -73,13 +76,16 @@ def test_every_field_is_the_solutions_of_that_name(periodic: bool, labels: list[
     """No two of them are equal here; patches are labels of the contact, across a period as well."""
     grid = rf.Grid((2, 3), (1e-3, 2e-3), periodic=periodic)
     contact = np.array([[True, False, True], [False, False, True]])
-    made: Any = SimpleNamespace(grid=grid, contact=contact)
+    slopes, details = SimpleNamespace(), SimpleNamespace()
+    made: Any = SimpleNamespace(grid=grid, contact=contact, slopes=slopes, details=details)
+    holders = {"theta_x": slopes, "theta_y": slopes, "plastic": details, "excluded": details}
     names = {
         "pressure": "Pa", "traction": "Pa", "gap": "m", "surface_lower": "m", "surface_upper": "m",
         "theta_x": "rad", "theta_y": "rad", "plastic_indentation": "m", "plastic": "1", "excluded": "1",
     }  # fmt: skip
     for k, name in enumerate(names):
-        setattr(made, name, np.full(grid.shape, float(k)))
+        setattr(holders.get(name, made), name, np.full(grid.shape, float(k)))
+    made.surfaces = made.surface_lower, made.surface_upper
     found = fields_of(made)
     assert found.pop("patch").values.tolist() == labels
     assert {name: field.unit for name, field in found.items()} == names
@@ -106,17 +112,17 @@ def test_without_xarray_the_extra_is_named(rough: rf.Solution, monkeypatch: pyte
 
 SHOWN = {  # value and error in SI, the unit there, and the row
     "friction_coefficient_corrected": (0.1234, 0.002, "1", "friction coefficient mu 0.123 +- 0.002"),
-    "friction_coefficient": (0.1301, 0.007, "1", "summed over elements 0.130 +- 0.007"),
+    "friction_coefficient": (0.1301, 0.007, "1", "mu, summed over elements 0.130 +- 0.007"),
     "contact_area": (2.5e-6, 3e-7, "m^2", "contact area A 2.5 +- 0.3 mm^2"),
     "contact_area_share": (0.31, 0.04, "1", "A/A0 0.31 +- 0.04"),
     "plastic_area": (0.7e-6, 0.0, "m^2", "plastic area 0.7 mm^2"),
     "max_pressure": (8.1e8, math.inf, "Pa", "maximum pressure p_max 810 unbounded (not usable) MPa"),
     "mean_pressure": (6.2e7, 9e7, "Pa", "mean contact pressure 62 +- 90 (not usable) MPa"),
-    "mean_gap": (4.5e-6, 0.0, "m", "mean gap 4.5 um"),
+    "mean_gap": (4.5e-6, None, "m", "mean gap 4.50 - um"),
     "approach": (3.14e-6, 0.96e-8, "m", "approach 3.140 +- 0.010 um"),
     "normal_force": (70.0, 0.0, "N", "normal force N 70 N"),
     "friction_force_corrected": (-8.0, 0.5, "N", "friction force F -8.0 +- 0.5 N"),
-    "binormal_force": (math.nan, 0.0, "N", "binormal force Q n/a N"),
+    "binormal_force": (math.nan, 0.0, "N", "transverse force Q n/a N"),
 }
 FINE = np.zeros((4, 65))
 FINE[2, 3], FINE[3, 64] = 8.0, 4.0
@@ -144,8 +150,8 @@ def test_the_map_has_x_to_the_right_and_y_up_and_the_maximum_of_each_cell() -> N
 
 
 def test_a_file_has_settings_units_and_the_errors_that_there_are(oblong: rf.Solution) -> None:
-    own = replace(oblong, uncertainty={"approach": {"a": 1e-7, "b": 2e-7}}, warnings=("x", "y"))
-    found = attributes_of(replace(own, grid=replace(own.grid, periodic=True)), {"code": "1.2"})
+    own = changed(oblong, uncertainty={"approach": {"a": 1e-7, "b": 2e-7}}, warnings=("x", "y"))
+    found = attributes_of(changed(own, grid=replace(own.grid, periodic=True)), {"code": "1.2"})
     errors = {name: value for name, value in found.items() if name.endswith("_error")}
     assert errors == pytest.approx({"approach_error": 3e-7})
     names = ("method", "periodic", "tolerance", "largest_residual", "sliding_direction", "warnings", "code")

@@ -91,25 +91,25 @@ def test_a_wave_under_a_rigid_plane_states_what_finite_elements_found(
     scene = wave_scene(slope_deg)
     solution = rf.solve(scene, grid=(96, 4))
     found = half_space_error(scene, solution)
-    first = solution.approach + solution.problem.datum
+    first = solution.approach + solution.details.problem.datum
     stated = found.stated("approach") / first, found.stated("normal_force") / scene.load
     assert approach <= stated[0] <= 1.5 * approach
     assert normal <= stated[1] <= 1.5 * normal
-    assert normal <= solution.model_form.normal_force <= 2 * normal
+    assert normal <= solution.details.model_form.normal_force <= 2 * normal
     (warning,) = [w for w in solution.warnings if w.limit == "half-space"]
-    error = solution.model_form
+    error = solution.details.model_form
     assert f"misstates N at a given approach by up to {warning.number:.1%}" in warning
     assert f"the approach under a load by {error.approach:.1%}" in warning
     # by a quarter of tan^2 of the wave's steepest slope more
     further = 0.25 * math.tan(math.radians(slope_deg)) ** 2
-    assert warning.number - solution.model_form.normal_force == pytest.approx(further, rel=0.01)
-    assert (solution.slope_error.at_rms or 0.0) < 0.01
+    assert warning.number - solution.details.model_form.normal_force == pytest.approx(further, rel=0.01)
+    assert (solution.details.slope_error.at_rms or 0.0) < 0.01
 
 
 def test_a_gentle_wave_warns_of_nothing() -> None:
     solution = rf.solve(wave_scene(1.5), grid=(96, 4))
     assert not [w for w in solution.warnings if w.limit == "half-space"]
-    assert 0 < solution.model_form.normal_force < 0.025
+    assert 0 < solution.details.model_form.normal_force < 0.025
 
 
 @pytest.mark.parametrize("facets_solved", [False, True])

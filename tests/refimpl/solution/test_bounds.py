@@ -46,13 +46,15 @@ def test_bounds_hold_for_any_state(seed: int, kind: str) -> None:
         approach=2e-6 if kind == "approach" else None,
     )
     random = np.random.default_rng(seed)
-    ratios = [assert_true(found.bounds, found.problem, found.pressure, found.traction, found.slopes)]
+    ratios = [
+        assert_true(found.details.bounds, found.details.problem, found.pressure, found.traction, found.slopes)
+    ]
     for size in (1e-1, 1e-3, 1e-6):
         noise = random.standard_normal((M, M)) * (random.random((M, M)) < 0.3)
         pressure = found.pressure * (1 + size * random.standard_normal()) + size * found.max_pressure * noise
-        traction = found.traction + size * found.friction.jump * random.standard_normal((M, M))
-        bounds = proven_bounds(found.problem, pressure, traction, found.slopes)
-        ratios.append(assert_true(bounds, found.problem, pressure, traction, found.slopes))
+        traction = found.traction + size * found.details.friction.jump * random.standard_normal((M, M))
+        bounds = proven_bounds(found.details.problem, pressure, traction, found.slopes)
+        ratios.append(assert_true(bounds, found.details.problem, pressure, traction, found.slopes))
     assert min(ratios) > 1e-4  # useful bounds: the norm is at most a hundred times the true error's
 
 
@@ -62,17 +64,17 @@ def test_elements_that_the_state_forgot_are_bounded() -> None:
     base = replace(scene(0, tau=0.0, beta=0.0), lower=rf.Body(POLYMER, np.zeros((2, 2))))
     base = replace(base, upper=rf.Body(STEEL, rf.Flat()))
     found = rf.solve(base, 2, approach=1e-7, oblique=False)
-    row = EnergyNorm(found.problem, np.ones((2, 2))).apply(np.array([[1.0, 0.0], [0.0, 0.0]]))
+    row = EnergyNorm(found.details.problem, np.ones((2, 2))).apply(np.array([[1.0, 0.0], [0.0, 0.0]]))
     pressure = np.array([[1e-7 / row[0, 1], 0.0], [0.0, 0.0]])
-    bounds = proven_bounds(found.problem, pressure, 0 * pressure, found.slopes)
-    assert assert_true(bounds, found.problem, pressure, 0 * pressure, found.slopes) > 0.5
+    bounds = proven_bounds(found.details.problem, pressure, 0 * pressure, found.slopes)
+    assert assert_true(bounds, found.details.problem, pressure, 0 * pressure, found.slopes) > 0.5
 
 
 def test_bounds_of_a_converged_state_are_sharp_and_decide_every_element() -> None:
     found = rf.solve(scene(4), M)
-    bounds = found.bounds
-    held = found.traction - found.friction.slope * found.pressure
-    exact, _, a = frozen_solution(found.problem, held, found.slopes)
+    bounds = found.details.bounds
+    held = found.traction - found.details.friction.slope * found.pressure
+    exact, _, a = frozen_solution(found.details.problem, held, found.slopes)
     e = found.pressure.ravel() - exact
     true = float(e @ a @ e) * found.grid.element_area
     assert true <= bounds.energy <= 2 * true + 1e-20 * float(exact @ a @ exact) * found.grid.element_area
@@ -90,7 +92,7 @@ def test_bounds_of_a_converged_state_are_sharp_and_decide_every_element() -> Non
     ],
 )
 def test_no_bound_is_infinite_and_says_why(options: dict[str, float], periodic: bool, why: str) -> None:
-    bounds = rf.solve(scene(0, periodic=periodic), M, **options).bounds  # type: ignore[arg-type]  # two options
+    bounds = rf.solve(scene(0, periodic=periodic), M, **options).details.bounds  # type: ignore[arg-type]  # two options
     assert bounds.unproven == why
     assert math.isinf(bounds.energy)
     assert math.isinf(bounds.friction_coefficient)
@@ -102,11 +104,13 @@ def test_no_bound_is_infinite_and_says_why(options: dict[str, float], periodic: 
 def test_no_bound_without_a_definite_norm_or_a_load() -> None:
     found = rf.solve(scene(0, periodic=True), M)
     steep = Slopes(40.0 * (np.indices((M, M)).sum(axis=0) % 2), np.zeros((M, M)))
-    assert proven_bounds(found.problem, found.pressure, found.traction, steep).unproven == NO_BOUND_STEEP
+    assert (
+        proven_bounds(found.details.problem, found.pressure, found.traction, steep).unproven == NO_BOUND_STEEP
+    )
     found = rf.solve(scene(0), M)
     nothing = np.zeros((M, M))
-    assert math.isinf(proven_bounds(found.problem, nothing, nothing, found.slopes).energy)
-    strong = replace(found.problem, friction=rf.Friction(0.0, 5.0))
+    assert math.isinf(proven_bounds(found.details.problem, nothing, nothing, found.slopes).energy)
+    strong = replace(found.details.problem, friction=rf.Friction(0.0, 5.0))
     tilted = Slopes(np.full((M, M), 3.0), np.zeros((M, M)))
     assert math.isinf(proven_bounds(strong, found.pressure, 5 * found.pressure, tilted).energy)
 
@@ -119,12 +123,12 @@ def test_bounds_of_a_state_with_a_hardness_are_sharp(tau: float) -> None:
     yields = replace(base, lower=replace(base.lower, material=replace(POLYMER, hardness=0.5 * peak)))
     exact = rf.solve(yields, M, oblique=False, tolerance=1e-13)
     assert 0.1 * exact.contact_area < exact.plastic_area < 0.9 * exact.contact_area
-    norm = EnergyNorm(exact.problem, np.ones((M, M)))
+    norm = EnergyNorm(exact.details.problem, np.ones((M, M)))
     for tolerance in (1e-2, 1e-3, 1e-4):
         early = rf.solve(yields, M, oblique=False, tolerance=tolerance)
         e = early.pressure - exact.pressure
         true = float(np.vdot(e, norm.apply(e))) * exact.grid.element_area
-        bounds = proven_bounds(exact.problem, early.pressure, exact.traction, Slopes.flat((M, M)))
+        bounds = proven_bounds(exact.details.problem, early.pressure, exact.traction, Slopes.flat((M, M)))
         assert true <= bounds.energy <= 5 * true  # measured 1.06 to 2.96
 
 

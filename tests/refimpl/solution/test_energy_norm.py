@@ -72,7 +72,7 @@ def test_an_indefinite_norm_has_no_dual() -> None:
 
 
 def test_dual_norm_is_a_bound_whatever_conjugate_gradients_return(monkeypatch: pytest.MonkeyPatch) -> None:
-    norm = EnergyNorm(rf.solve(scene(1), M, tolerance=0.5).problem, np.ones((M, M)))
+    norm = EnergyNorm(rf.solve(scene(1), M, tolerance=0.5).details.problem, np.ones((M, M)))
     right, where = np.random.default_rng(3).standard_normal((M, M)), np.ones((M, M), dtype=bool)
     z, az = norm.solve(right, where)
     exact = norm.dual_norm(right, where)

@@ -112,9 +112,9 @@ def test_outside_the_table_is_refused(name: str, value: float, allowed: str) -> 
 
 def test_a_solution_quotes_its_slopes() -> None:
     solution = rf.solve(rf.read_scene("table1-rough"), grid=64)
-    quoted = solution.slope_error
+    quoted = solution.details.slope_error
     loaded = solution.contact
-    steepest = np.hypot(np.tan(solution.theta_x), np.tan(solution.theta_y))[loaded].max()
+    steepest = np.hypot(np.tan(solution.slopes.theta_x), np.tan(solution.slopes.theta_y))[loaded].max()
     assert quoted.max_slope == pytest.approx(math.atan(steepest), rel=1e-12)
     in_space = element_error(quoted.max_slope, COPPER, STEEL)
     assert quoted.at_max == in_space.in_line > coefficient_error(quoted.max_slope, COPPER, STEEL)

@@ -27,6 +27,7 @@ from refimpl.solution.limits import (
     model_warnings,
     plain_warning,
 )
+from tests.changed import changed
 from tests.refimpl.states import state_of
 
 STEEL, COPPER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30)
@@ -49,7 +50,7 @@ def named(s: rf.Solution) -> dict[Limit, ModelWarning]:
 def evidence(s: rf.Solution, scene: rf.Scene, **changes: object) -> Evidence:
     """What the limits of a solution are compared with, but for some changes."""
     given = {name: changes.pop(name) for name in ("problem", "state") if name in changes}
-    own = replace(s.evidence, scene=scene, **given)  # type: ignore[arg-type]  # fields of an Evidence
+    own = replace(s.details.evidence, scene=scene, **given)  # type: ignore[arg-type]  # fields of an Evidence
     vars(own).update(changes)  # which it computes when first read
     return own
 
@@ -146,7 +147,7 @@ def test_a_neglected_term_that_matters() -> None:
 def test_a_term_within_what_the_plan_allows_is_no_warning() -> None:
     """Without friction that is more than the accuracy asked for: a share of what the grid leaves open."""
     s = rf.solve(replace(SMOOTH, friction=rf.Friction()), 64)
-    assert s.plan.demand < s.neglected["oblique"].larger <= s.plan.budget
+    assert s.plan.demand < s.details.neglected["oblique"].larger <= s.plan.budget
     assert Limit.NEGLECTED not in named(s)
     mattered = evidence(s, SMOOTH, neglected={"oblique": Effect(0.0, 2 * s.plan.budget)})
     (found,) = (w for w in model_warnings(mattered) if w.limit is Limit.NEGLECTED)
@@ -168,9 +169,9 @@ def test_warnings_are_texts_with_numbers() -> None:
 @pytest.mark.parametrize("status", list(rf.Status))
 def test_a_certificate_that_fails_counts_more_than_an_accuracy_that_is_missed(status: rf.Status) -> None:
     s = rf.solve(SMOOTH, 16)
-    ended = replace(s.evidence, state=replace(s.state, status=status))
+    ended = replace(s.details.evidence, state=replace(s.details.state, status=status))
     ended_well = status in (rf.Status.CONVERGED, rf.Status.CYCLED)
-    found = replace(s, evidence=ended, shortfall=Notice("short")).status
+    found = changed(s, evidence=ended, shortfall=Notice("short")).status
     assert found is (rf.Status.ACCURACY_NOT_REACHED if ended_well else status)
 
 
@@ -205,7 +206,7 @@ def test_a_warning_has_its_numbers_in_their_units(
     scene = replace(SMOOTH, side=None, size=(2.4e-3, 1.6e-3))
     s = rf.solve(scene, (6, 4))
     given, state = dict(changes), state_of(s)
-    problem = replace(s.problem, load=given.pop("load", 70.0))
+    problem = replace(s.details.problem, load=given.pop("load", 70.0))
     state = replace(state, **{key: given.pop(key) for key in changes if key in vars(state)})
     made = evidence(s, scene, problem=problem, state=state, **given)
     (found,) = (w for w in model_warnings(made) if w.limit == name)
@@ -237,14 +238,14 @@ def test_both_bodies_deform_into_themselves_and_meet() -> None:
     """At the middle both give way; the surfaces touch where there is pressure, and leave a gap beside it."""
     s = rf.solve(SCENE, 32, oblique=False)
     contact = s.contact
-    assert np.abs(s.separation[contact]).max() < 1e-8 * s.approach
-    assert s.separation[~contact].min() > 0
-    assert np.allclose(s.separation, s.surface_upper - s.surface_lower, rtol=0, atol=1e-18)
-    lower, upper = s.problem.heights
+    assert np.abs(s.details.separation[contact]).max() < 1e-8 * s.approach
+    assert s.details.separation[~contact].min() > 0
+    assert np.allclose(s.details.separation, s.surfaces[1] - s.surfaces[0], rtol=0, atol=1e-18)
+    lower, upper = s.details.problem.heights
     middle = 16, 16
     into_lower, into_upper = (
-        lower[middle] - s.surface_lower[middle],
-        s.surface_upper[middle] - upper[middle] + s.approach,
+        lower[middle] - s.surfaces[0][middle],
+        s.surfaces[1][middle] - upper[middle] + s.approach,
     )
     # each by its compliance (1 - nu^2) / E
     ratio = ((1 - 0.35**2) / 2e9) / ((1 - 0.2**2) / 7e9)
@@ -255,7 +256,7 @@ def test_both_bodies_deform_into_themselves_and_meet() -> None:
 def test_where_slopes_are_excluded_they_are_those_of_the_deformed_surface() -> None:
     """The mean of both surfaces of the solution, by NumPy's gradient, on its contact."""
     s = rf.solve(STEEP_ON_SOFT, 48, oblique=False)
-    gradient = np.gradient(0.5 * (s.surface_lower + s.surface_upper), 4e-3 / 48)
+    gradient = np.gradient(0.5 * np.add(*s.surfaces), 4e-3 / 48)
     steepest = math.degrees(math.atan(float(np.hypot(*gradient)[s.contact].max())))
     text = str(warned(s, Limit.MAX_SLOPE))
     assert float(re.findall(r"slope ([0-9.]+) degrees", text)[0]) == pytest.approx(steepest, rel=0.01)

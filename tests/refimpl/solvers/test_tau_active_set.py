@@ -269,7 +269,7 @@ def test_grid_accuracy_and_start_agree() -> None:
     restarted = rf.solve(scene, by_grid.grid.shape[0], start=nearby)
     for other in (by_accuracy, restarted):
         assert np.array_equal(other.traction > 0, by_grid.traction > 0)
-        assert np.array_equal(other.excluded, by_grid.excluded)
+        assert np.array_equal(other.details.excluded, by_grid.details.excluded)
 
 
 @pytest.mark.parametrize("scene", [FAINT, random_scene(3), random_scene(5)])
@@ -297,7 +297,7 @@ def test_a_few_undecided_elements_do_not_hold_up_a_fine_smooth_contact() -> None
         for law, oblique in ((rf.Friction(), False), (problems.FRICTION, True))
     )
     assert coupled.cost.point_logs <= 2.5 * without.cost.point_logs
-    assert np.count_nonzero(coupled.excluded) == 2
+    assert np.count_nonzero(coupled.details.excluded) == 2
 
 
 def test_a_scene_whose_edge_moves_far_ends_after_few_solves() -> None:
@@ -310,7 +310,7 @@ def test_a_scene_whose_edge_moves_far_ends_after_few_solves() -> None:
 def test_the_error_bar_of_the_active_set_holds_all_of_tau_on_excluded_elements() -> None:
     scene = study.random_scene(2071).scene
     found = rf.solve(scene, 128)
-    spared = np.count_nonzero(found.excluded & (found.pressure > 0)) * found.grid.element_area
+    spared = np.count_nonzero(found.details.excluded & (found.pressure > 0)) * found.grid.element_area
     assert spared > 0
     bar = found.uncertainty["friction_coefficient"]["active set"]
     assert bar == pytest.approx(scene.friction.tau * spared / scene.load, rel=1e-12)

@@ -21,7 +21,7 @@ def agree(trial: Trial, fft: rf.Solution) -> None:
     assert dense.status in ENDED_WELL
     assert fft.status is dense.status
     assert np.array_equal(dense.contact, fft.contact)
-    assert np.array_equal(dense.excluded, fft.excluded)
+    assert np.array_equal(dense.details.excluded, fft.details.excluded)
     assert np.abs(dense.pressure - fft.pressure).max() <= 1e-9 * dense.max_pressure
     assert np.abs(dense.traction - fft.traction).max() <= 1e-9 * np.abs(dense.traction).max()
     assert fft.contact_area == pytest.approx(dense.contact_area, rel=1e-9)
@@ -55,7 +55,7 @@ def test_the_scenes_stress_what_they_say() -> None:
     assert 0.9 < fractions["near-full"] < 1
     assert 0.9 < fractions["near-full-periodic"] < 1
     assert TRIALS["strong-tau"].dense.status is rf.Status.CYCLED
-    assert TRIALS["strong-tau"].dense.excluded.any()
+    assert TRIALS["strong-tau"].dense.details.excluded.any()
     assert not TRIALS["identical"].dense.plan.includes("coupled")
 
 

@@ -97,10 +97,10 @@ def test_surface_states_every_numbers_error_and_advises(tmp_path: Path) -> None:
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
     lines = [line.strip() for line in shown(command).splitlines()]
     for label, number, factor, unit in (
-        ("A", "contact_area", 1e6, "mm^2"),
-        ("p_max", "max_pressure", 1e-6, "MPa"),
+        ("contact area A", "contact_area", 1e6, "mm^2"),
+        ("maximum pressure p_max", "max_pressure", 1e-6, "MPa"),
         ("approach", "approach", 1e6, "um"),
-        ("N at this approach", "normal_force", 1.0, "N"),
+        ("normal force N", "normal_force", 1.0, "N"),
     ):
         (line,) = [line for line in lines if line.startswith(f"{label} ")]
         assert f"{found['numbers'][number]['value'] * factor:.4g}" in line.split()

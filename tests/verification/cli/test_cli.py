@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 import refimpl
-from refimpl.accuracy.refinement import QUANTITIES
 from refimpl.planning.plan import METHODS
+from refimpl.solution.quantities import TARGETS
 from reports.generator import render
 from tests.documents import ROOT
 from tests.reports import sample
@@ -65,7 +65,7 @@ def test_help_does_not_wait_for_numpy_and_repeats_its_names() -> None:
     check = "import sys; import verification.cli as c; c.parser(); sys.exit('numpy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", check], check=False).returncode == 0
     assert set(solve.METHODS) == set(METHODS)
-    assert set(solve.ACCURATE) == set(QUANTITIES)
+    assert set(solve.ACCURATE) == set(TARGETS)
     assert f"Shipped scenes: {', '.join(refimpl.shipped_scenes())}." in solve.EPILOG
     stated = "exit status: 0 CONVERGED, or CYCLED: converged, with an alternating contact edge"
     assert stated in solve.EPILOG

@@ -94,7 +94,7 @@ def test_the_forecast_names_the_grid_that_the_refinement_ends_on() -> None:
     """Sizes are four an octave: one step off is 17 to 25 per cent."""
     document = answer("solve table1-smooth --accuracy 0.01 --explain --no-tilted")
     expected = document["forecast"]
-    last = rf.solve(rf.read_scene("table1-smooth"), accuracy=0.01, tilted=False).problem.grid.shape[0]
+    last = rf.solve(rf.read_scene("table1-smooth"), accuracy=0.01, tilted=False).details.problem.grid.shape[0]
     assert (expected["solved"], expected["refusal"]) == ([[32, 32], [64, 64]], "")
     assert expected["grid"][0] == pytest.approx(last, rel=0.26)
     assert min(expected["memory"], expected["seconds"]) > 0

@@ -10,7 +10,7 @@ from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.peak import NO_PEAK, Peak
 from refimpl.grid import Grid
 from refimpl.model.forces import EDGE_SHARE
-from refimpl.solution.solution import REPORTED
+from refimpl.solution.quantities import REPORTED
 from verification.coverage.drawing import SIDE
 from verification.coverage.store import GridSolve
 

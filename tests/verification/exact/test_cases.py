@@ -11,6 +11,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Array
+from tests.changed import changed
 from verification.cases.contact import scenes
 from verification.framework import registry
 from verification.framework.case import Status
@@ -42,7 +43,7 @@ def pressure_fault(change: Callable[[Array], Array]) -> Solver:
 
     def solve(scene: rf.Scene, **options: Any) -> rf.Solution:
         found = rf.solve(scene, **options)
-        return dataclasses.replace(found, pressure=change(found.pressure))
+        return changed(found, pressure=change(found.pressure))
 
     return solve
 
@@ -90,7 +91,7 @@ def test_a_solver_that_does_not_converge_is_no_pass(monkeypatch: pytest.MonkeyPa
             return getattr(rf, name)
 
         def solve(self, scene: rf.Scene, **options: Any) -> rf.Solution:
-            return dataclasses.replace(rf.solve(scene, **options), status=rf.Status.STAGNATED)
+            return changed(rf.solve(scene, **options), status=rf.Status.STAGNATED)
 
     monkeypatch.setattr(scenes, "rf", Stuck())
     assert verdict("westergaard-full") is Status.ERROR

@@ -6,7 +6,6 @@ import ast
 import json
 import subprocess
 import sys
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ import pytest
 
 import refimpl as rf
 from reports.result_files import read_result
+from tests.changed import changed
 from tests.layers import ROOT
 from verification.properties import INVARIANTS, check_solver, nightly
 from verification.properties.__main__ import main
@@ -28,12 +28,12 @@ def test_invariant(name: str, solver: str, order_seed: int | None) -> None:
 
 
 PROGRAM = """
-from dataclasses import replace
 import refimpl as rf
 from verification.properties import check_solver
+from tests.changed import changed
 def wrong(scene, grid, **options):
     found = rf.solve(scene, grid, **options)
-    return replace(found, pressure=1.5 * found.pressure, normal_force=1.5 * found.normal_force)
+    return changed(found, pressure=1.5 * found.pressure, normal_force=1.5 * found.normal_force)
 try:
     check_solver(wrong, examples=2, only=["load_balance"])
 except AssertionError:
@@ -79,7 +79,7 @@ def test_a_night_resumes_and_another_seed_starts_anew(tmp_path: Path) -> None:
 
 def solve_with_a_wrong_peak(scene: rf.Scene, grid: int, **keywords: Any) -> rf.Solution:
     good = rf.solve(scene, grid, method="dense", tolerance=1e-12, **keywords)
-    return replace(good, max_pressure=good.max_pressure * (1 if scene.periodic else 1 + 1e-15))
+    return changed(good, max_pressure=good.max_pressure * (1 if scene.periodic else 1 + 1e-15))
 
 
 @pytest.mark.usefixtures("two_invariants")

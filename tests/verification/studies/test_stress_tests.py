@@ -14,6 +14,7 @@ import pytest
 import refimpl as rf
 from refimpl.operators.fft import FFTInfluence
 from reports.result_files import committed, read_result
+from tests.changed import changed
 from verification.cases.solvers.stress_tests import counted
 from verification.exact.dense_influence import DenseInfluence
 from verification.scenes.cross_checks import POLYMER, pressed
@@ -101,11 +102,11 @@ def test_exact_periodic_operators_are_the_symbols_eigenfunctions() -> None:
 
 
 SABOTAGE = {
-    "pressure": lambda s: replace(s, pressure=s.pressure * (1 + 1e-5)),
-    "one element": lambda s: replace(s, pressure=np.where(s.pressure == s.pressure.max(), 0.0, s.pressure)),
-    "approach": lambda s: replace(s, approach=s.approach + 1e-9),
-    "friction": lambda s: replace(s, friction_force=-s.friction_force),
-    "normal": lambda s: replace(s, normal_force=s.normal_force * 1.00001),
+    "pressure": lambda s: changed(s, pressure=s.pressure * (1 + 1e-5)),
+    "one element": lambda s: changed(s, pressure=np.where(s.pressure == s.pressure.max(), 0.0, s.pressure)),
+    "approach": lambda s: changed(s, approach=s.approach + 1e-9),
+    "friction": lambda s: changed(s, friction_force=-s.friction_force),
+    "normal": lambda s: changed(s, normal_force=s.normal_force * 1.00001),
 }
 
 
@@ -160,7 +161,7 @@ def test_support_is_where_tau_acts(monkeypatch: pytest.MonkeyPatch) -> None:
     solve = Oracle.solve
     monkeypatch.setattr(Oracle, "solve", lambda *given: (seen.append(given[2]), solve(*given))[1])
     beta_alone = np.where(excluded, BALL.friction.beta * solution.pressure, solution.traction)
-    judge.exact_error(BALL, replace(solution, traction=beta_alone))
+    judge.exact_error(BALL, changed(solution, traction=beta_alone))
     assert np.array_equal(seen[0], solution.contact & ~excluded)
     dry = replace(BALL, friction=rf.Friction(beta=0.3))
     judge.exact_error(dry, rf.solve(dry, 4))
@@ -209,7 +210,7 @@ def test_verdicts(verdict: str, status: str, run: Callable[[], Judged]) -> None:
 
 
 def test_an_error_that_the_status_admits_is_a_detected_failure() -> None:
-    failed = replace(rf.solve(BALL, 4), status=rf.Status.STAGNATED)
+    failed = changed(rf.solve(BALL, 4), status=rf.Status.STAGNATED)
     assert judge.verdict(failed, 1.0, "x").verdict is Verdict.DETECTED
 
 

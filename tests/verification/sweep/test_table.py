@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.solution.limits import Limit, ModelWarning
+from tests.changed import changed
 from verification.cli import plot_curves
 from verification.sweep import export, run
 from verification.sweep.curves import Point, curves
@@ -67,10 +68,10 @@ def test_each_outcome_of_a_row() -> None:
         "friction_coefficient": {"active set": 0.25, "iteration": 0.5},
         "contact_area": {"active set": 2.0},
     }
-    row = outcome(replace(s, uncertainty=parts, certificate=replace(s.certificate, gap=0.125)), scene)
+    row = outcome(changed(s, uncertainty=parts, certificate=replace(s.certificate, gap=0.125)), scene)
     same = "friction_coefficient contact_area contact_area_corrected max_pressure approach normal_force"
     same += " friction_force binormal_force friction_coefficient_corrected friction_force_corrected"
-    pushed = s.pressure * np.sin(s.theta_x) * np.cos(s.theta_y)
+    pushed = s.pressure * np.sin(s.slopes.theta_x) * np.cos(s.slopes.theta_y)
     border = np.ones((16, 16), dtype=bool)
     border[1:-1, 1:-1] = False
     expected = {name: getattr(s, name) for name in same.split()} | {
@@ -83,7 +84,7 @@ def test_each_outcome_of_a_row() -> None:
         "border_elements": int(s.contact[border].sum()),
     }
     assert {name: row[name] for name in expected} == expected
-    assert abs(np.cos(s.theta_y)[s.contact] - 1).max() > 1e-4
+    assert abs(np.cos(s.slopes.theta_y)[s.contact] - 1).max() > 1e-4
 
 
 def test_further_outcomes_of_an_oblong_row() -> None:
@@ -93,9 +94,10 @@ def test_further_outcomes_of_an_oblong_row() -> None:
     upper = rf.Body(rf.Material(float("inf"), 0.3), rf.Flat())
     scene = rf.Scene(upper, lower, rf.Friction(), 2.0, size=(2e-3, 1e-3))
     warned = [ModelWarning(Limit(x), 1, 2, "") for x in ("border", "half-space", "border")]
-    s = replace(rf.solve(scene, (12, 6)), contact_area=5e-7, plastic_area=1e-7, warnings=tuple(warned))
+    s = changed(rf.solve(scene, (12, 6)), contact_area=5e-7, plastic_area=1e-7, warnings=tuple(warned))
     p = np.arange(72.0).reshape(12, 6)
-    row = outcome(replace(s, pressure=p, gap=p + 72), scene)
+    found = replace(s.details.state, pressure=p, v=p + 72, approach=0.0)
+    row = outcome(changed(s, state=found), scene)
     assert row["plasticity_index"] == pytest.approx(0.00125**0.5 / 0.91)
     assert (row["plastic_area"], row["plastic_share"], row["contact_area_share"]) == (1e-7, 0.2, 0.25)
     assert (row["mean_pressure"], row["mean_gap"], row["elements_x"], row["elements_y"]) == (36, 107.5, 12, 6)

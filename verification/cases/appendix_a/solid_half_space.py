@@ -73,7 +73,7 @@ def _by_model(pair: WavyPair) -> tuple[rf.Solution, HalfSpaceError, float]:
     """Solution, its error and its approach from first contact over the amplitude."""
     scene = scene_of(pair, M)
     solution = rf.solve(scene, M, tolerance=1e-6)
-    first = (solution.approach + solution.problem.datum) / pair.amplitude
+    first = (solution.approach + solution.details.problem.datum) / pair.amplitude
     return solution, half_space_error(scene, solution), first
 
 
@@ -82,10 +82,10 @@ def judged(lower: Material, upper: Material, shift: float, slope_deg: float) -> 
     steep, slight = (WavyPair(s, shift, lower, upper, beta=BETA) for s in (slope_deg, SLIGHT))
     approach, mu = np.array(by_elements(steep, ELEMENTS)) / np.array(by_elements(slight, ELEMENTS))
     (solution, error, first), (plain, _, flat) = _by_model(steep), _by_model(slight)
-    datum = solution.problem.datum
+    datum = solution.details.problem.datum
     asked = approach * flat * steep.amplitude - datum
     at = rf.solve(scene_of(steep, M), M, tolerance=1e-6, approach=asked)
-    load = solution.problem.load or 0.0
+    load = solution.details.problem.load or 0.0
     model_mu = solution.friction_coefficient / plain.friction_coefficient
     true = {
         "approach": approach * flat / first - 1,

@@ -193,7 +193,7 @@ def judged(profiles: Profiles, M: int = 384) -> Judged:
     scene = scene_of(profiles, M)
     solution = rf.solve(scene, grid=(M, ACROSS), tolerance=TOLERANCE)
     error = half_space_error(scene, solution)
-    datum = solution.problem.datum
+    datum = solution.details.problem.datum
     first = solution.approach + datum
     at = rf.solve(scene, grid=(M, ACROSS), tolerance=TOLERANCE, approach=fine.approach - datum)
     true = {"approach": fine.approach / first - 1, "normal_force": scene.load / at.normal_force - 1}
@@ -211,7 +211,7 @@ def judged(profiles: Profiles, M: int = 384) -> Judged:
         if abs(value) > NO_FRICTION:
             true[name] = by_fem[name] / value - 1
             change[name] = receded[name] / value - 1
-    steep = steepness(solution.problem, solution.contact)
+    steep = steepness(solution.details.problem, solution.contact)
     stated = {q: (1 + FINITE_STRAIN) * abs(c) + SECOND_ORDER[q] * steep for q, c in change.items()}
     warned = any(getattr(w, "limit", None) == "half-space" for w in solution.warnings)
     return Judged(true, stated, change, warned)

@@ -29,13 +29,13 @@ def solved(name: str, M: int) -> rf.Solution:
 
 def normal_force(solution: rf.Solution) -> float:
     """Eq. (2) with trigonometric functions of angles measured on the returned surfaces, exactly summed."""
-    common = (solution.surface_lower + solution.surface_upper) / 2
+    common = np.add(*solution.surfaces) / 2
     border = 1 if solution.grid.periodic else 0
     wide, inner = np.pad(common, border, mode="wrap"), slice(border, len(common) + border)
     along_i, along_j = (
         np.gradient(wide, edge, axis=k)[inner, inner] for k, edge in enumerate(solution.grid.spacings)
     )
-    phi = solution.sliding_direction
+    phi = solution.details.sliding_direction
     theta_x = np.arctan(math.cos(phi) * along_i + math.sin(phi) * along_j)
     theta_y = np.arctan(math.cos(phi) * along_j - math.sin(phi) * along_i)
     terms = (solution.pressure * np.cos(theta_x) - solution.traction * np.sin(theta_x)) * np.cos(theta_y)
@@ -90,7 +90,7 @@ def loading_curve(nodes: int) -> tuple[Array, Array, float]:
     )
     lower, upper = scene.heights(end.grid)
     gap = upper - lower
-    displacement = end.separation - (gap - gap.min()) + end.approach
+    displacement = end.details.separation - (gap - gap.min()) + end.approach
     energy = 0.5 * float(np.vdot(end.pressure, displacement)) * end.grid.element_area
     return 2 * end.approach * t * weight, loads, energy
 
@@ -166,11 +166,11 @@ def flat_tips() -> Measured:
     scene = rf.read_scene("table1-smooth")
     solution = rf.solve(scene, 64, oblique=False)
     # sum over the elements that carry tau: an alternating contact edge excludes some, and Eq. (1) none
-    area = np.count_nonzero(solution.contact & ~solution.excluded) * solution.grid.element_area
+    area = np.count_nonzero(solution.contact & ~solution.details.excluded) * solution.grid.element_area
     return Measured(
         value=friction_coefficient_at(scene.friction, solution.normal_force / area),
         reference=solution.friction_force / solution.normal_force,
-        note=f"{solution.status.value}, {int(solution.excluded.sum())} elements excluded from tau",
+        note=f"{solution.status.value}, {int(solution.details.excluded.sum())} elements excluded from tau",
     )
 
 

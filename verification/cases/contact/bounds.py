@@ -76,7 +76,7 @@ def energy() -> Measured:
     """
     ratios: dict[float, list[float]] = {tol: [] for tol in TOLERANCES}
     for known, tol, found in rough_states():
-        bound = bounds_of(known, found.problem, found.pressure).energy
+        bound = bounds_of(known, found.details.problem, found.pressure).energy
         ratios[tol].append(energy_of(known, found.pressure - known.pressure) / bound)
     sharp = [1 / math.sqrt(np.median(ratios[tol])) for tol in TOLERANCES]
     return Measured(
@@ -107,7 +107,7 @@ def any_state() -> Measured:
     """
     random, ratios = np.random.default_rng(5), []
     for known in stored():
-        problem, shape = loose(known.scene.name, 1e-8).problem, known.contact.shape
+        problem, shape = loose(known.scene.name, 1e-8).details.problem, known.contact.shape
         for size in (1.0, 0.1, 1e-3, 1e-6):
             noise = random.standard_normal(shape) * (random.random(shape) < 0.5)
             pressure = known.pressure + size * float(known.pressure.max()) * noise
@@ -130,9 +130,9 @@ def numbers() -> Measured:
         if known.scene.oblique or not same_support(known, found):
             continue  # its own slopes, or active set of tau: another frozen problem than the proven one
         compared += 1
-        bounds = bounds_of(known, found.problem, found.pressure)
+        bounds = bounds_of(known, found.details.problem, found.pressure)
         miss = {"pressure": float(np.abs(found.pressure - known.pressure).max())}
-        mean = float(found.problem.gap.mean()) if known.scene.periodic else 0.0
+        mean = float(found.details.problem.gap.mean()) if known.scene.periodic else 0.0
         for name, exact in known.numbers.items():
             value = getattr(found, name) + (mean if name == "approach" else 0.0)
             miss[name] = max(0.0, abs(value - exact.mid) - exact.radius - 1e-15 * abs(exact.mid))
@@ -154,7 +154,7 @@ def contact_sets() -> Measured:
     """
     wrong = 0
     for known, tol, found in rough_states():
-        bounds = bounds_of(known, found.problem, found.pressure)
+        bounds = bounds_of(known, found.details.problem, found.pressure)
         wrong += int(np.count_nonzero(bounds.in_contact & ~known.contact))
         wrong += int(np.count_nonzero(bounds.out_of_contact & known.contact))
         low, high = bounds.contact_area
@@ -176,7 +176,7 @@ def least_eigenvalue() -> Measured:
     """
     ratios = []
     for M in (1, 2, 3, 5, 8, 12, 16):
-        problem = rf.solve(pressed(rms=None), M, tolerance=0.5, oblique=False).problem
+        problem = rf.solve(pressed(rms=None), M, tolerance=0.5, oblique=False).details.problem
         matrix = problem.pair.normal_compliance * normal_matrix(problem.grid)
         floor = EnergyNorm(problem, np.ones((M, M))).floor
         ratios.append(floor / float(np.linalg.eigvalsh(matrix)[0]))
@@ -191,7 +191,7 @@ def production() -> Measured:
     Tolerance: a hundredth of what the paper prints of mu; the bound is linear in residuals of 1e-8
     """
     found = rf.solve(rf.read_scene("table1-rough"), 64)
-    bounds = found.bounds
+    bounds = found.details.bounds
     low, high = bounds.contact_area
     undecided = round((high - low) / found.grid.element_area)
     value = bounds.friction_coefficient if undecided == 0 else math.inf

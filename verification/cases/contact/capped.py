@@ -57,7 +57,7 @@ def apart(dense: rf.Solution, fft: rf.Solution) -> float:
     if not np.array_equal(dense.contact, fft.contact) or dense.plastic_area != fft.plastic_area:
         return float("inf")
     forces = (getattr(dense, name) - getattr(fft, name) for name in ("friction_force", "binormal_force"))
-    pressures = np.abs(dense.pressure - fft.pressure).max() / dense.problem.cap
+    pressures = np.abs(dense.pressure - fft.pressure).max() / dense.details.problem.cap
     return max(float(pressures), *(abs(float(force)) / dense.normal_force for force in forces))
 
 

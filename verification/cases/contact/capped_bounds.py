@@ -28,7 +28,7 @@ def shares_of_bounds(seed: int) -> dict[str, list[float]]:
     for tolerance in TOLERANCES:
         approach = exact.approach if at_approach else None
         s = rf.solve(scene, GRID, plastic=True, oblique=False, tolerance=tolerance, approach=approach)
-        b = s.bounds
+        b = s.details.bounds
         if not np.isfinite(b.energy):
             raise RuntimeError(f"scene {seed}: {b.unproven}")
         wrong = (b.plastic & (exact.pressure < hardness)) | (b.in_contact & (exact.pressure == 0))

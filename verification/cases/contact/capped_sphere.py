@@ -93,7 +93,7 @@ def pressure() -> Measured:
         x = found.grid.x - found.grid.lengths[0] / 2
         r = np.hypot(x[:, None], x)
         inside = r < exact.radius
-        error = (found.pressure - np.interp(r, exact.r, exact.pressure))[inside] / found.problem.cap
+        error = (found.pressure - np.interp(r, exact.r, exact.pressure))[inside] / found.details.problem.cap
         off[f"{share:g}"] = float(np.sqrt(np.mean(error**2)))
     return Measured(value=max(off.values()), data={"off": off})
 
@@ -150,7 +150,7 @@ def rough_limit() -> Measured:
         excesses = []
         for factor in (200.0, 40.0, 8.0, 2.0):
             found = rf.solve(with_hardness(scene, factor * least), 64, plastic=True, oblique=False)
-            H, dA = found.problem.cap, found.grid.element_area
+            H, dA = found.details.problem.cap, found.grid.element_area
             room = float(np.sum(H - found.pressure, where=found.contact)) * dA / scene.load
             excess = found.contact_area * H / scene.load - 1
             worst = max(worst, abs(excess - room), -excess)

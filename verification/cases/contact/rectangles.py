@@ -108,7 +108,7 @@ def imaged(trial: Trial, change: Callable[[Array], Array], phi: float) -> rf.Sol
         lower=rf.Body(trial.scene.lower.material, rf.ArraySurface(lower, pixel=grid.spacings)),
         upper=rf.Body(trial.scene.upper.material, rf.ArraySurface(upper, pixel=grid.spacings)),
     )
-    switches = base.problem.terms
+    switches = base.details.problem.terms
     options = {"slope_correction": True} if switches.slope_correction else {"coupled": switches.coupled}
     return rf.solve(
         scene,
@@ -123,7 +123,7 @@ def imaged(trial: Trial, change: Callable[[Array], Array], phi: float) -> rf.Sol
 
 def decided(solution: rf.Solution) -> bool:
     """True if the proven bounds decide the contact of every element."""
-    bounds = solution.bounds
+    bounds = solution.details.bounds
     return bool(np.all(bounds.in_contact | bounds.out_of_contact))
 
 

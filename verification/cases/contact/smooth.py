@@ -113,7 +113,7 @@ def ellipse_outside() -> Measured:
     solution, x, y = press_ellipse(96)
     exact = ellipsoid(x, y) + ELLIPSE.displacement(x, y) - ELLIPSE.approach
     outside = ELLIPSE.pressure(x, y) == 0
-    misfit = np.abs(solution.separation - exact)[outside] / ELLIPSE.approach
+    misfit = np.abs(solution.details.separation - exact)[outside] / ELLIPSE.approach
     return Measured(float(misfit.max()))
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD
+from refimpl.solution.quantities import error_bound
 from verification.cases import Measured, case
 from verification.cases.contact import hertz
 from verification.cases.contact.hertz import mean_radii
@@ -49,7 +50,7 @@ def hertz_area() -> Measured:
     """
     exact = math.pi * EXACT.contact_radius**2
     found = [rf.solve(_moved(position), accuracy=0.01, quantity="contact_area") for position in range(41)]
-    bars = [sum(solution.uncertainty["contact_area"].values()) for solution in found]
+    bars = [error_bound(solution, "contact_area") for solution in found]
     areas = [solution.contact_area for solution in found]
     shares = [abs(area - exact) / bar for area, bar in zip(areas, bars, strict=True)]
     kept = [bar <= 0.01 * area for area, bar in zip(areas, bars, strict=True)]
@@ -76,7 +77,7 @@ def hertz_peaks() -> Measured:
         pressed, pushed = rf.solve(scene, M), rf.solve(scene, M, approach=EXACT.approach)
         for name, solution in (("max_pressure", pressed), ("approach", pressed), ("normal_force", pushed)):
             error = abs(getattr(solution, name) - exact[name])
-            shares[name].append(error / sum(solution.uncertainty[name].values()))
+            shares[name].append(error / error_bound(solution, name))
     return Measured(
         value=float(np.mean([share <= 1 for found in shares.values() for share in found])),
         reference_uncertainty=UNCERTAINTY,

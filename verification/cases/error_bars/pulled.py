@@ -10,6 +10,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.model.materials import Pair
+from refimpl.solution.quantities import error_bound
 from verification.cases import Measured, case
 
 SIDE, SOFT = 1e-3, 1e9  # m; Pa, the more compliant body's modulus
@@ -35,11 +36,11 @@ def off(scene: rf.Scene, M: int, approach: float | None = None) -> dict[str, flo
     found, finer = (rf.solve(scene, grid=grid, approach=approach) for grid in (M, FINER * M))
     if not (found.converged and finer.converged):
         raise RuntimeError(f"{found.status.value} on {M} elements a side, {finer.status.value} on more")
-    true = dict(finer.features.numbers, max_pressure=finer.features.peak.height)
+    true = dict(finer.details.features.numbers, max_pressure=finer.details.features.peak.height)
     shares = {}
     for name in ("approach",) if approach is None else ("normal_force", "max_pressure"):
         error = FINER / (FINER - 1) * abs(getattr(found, name) - true[name])
-        shares[name] = error / sum(found.uncertainty[name].values())
+        shares[name] = error / error_bound(found, name)
     return shares
 
 

@@ -52,12 +52,12 @@ def covered(*, oblong: bool) -> tuple[Mapping[str, float], int]:
         if not all(solution.converged for solution in (*coarse, finest)):
             continue
         solved += 1
-        parts, reference = uncertainty([s.features for s in coarse]), finest.features.numbers
+        parts, reference = uncertainty([s.details.features for s in coarse]), finest.details.features.numbers
         for name in NUMBERS:
             bar = sum(parts[name].values())
             if math.isfinite(bar):
                 bounded[name] += 1
-                held[name] += abs(coarse[-1].features.numbers[name] - reference[name]) <= bar
+                held[name] += abs(coarse[-1].details.features.numbers[name] - reference[name]) <= bar
     return {name: held[name] / bounded[name] for name in NUMBERS}, solved
 
 

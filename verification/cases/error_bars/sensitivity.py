@@ -47,7 +47,7 @@ def _at_the_edge(solution: rf.Solution, number: str, excess: float) -> float:
     """A number of a solution; mu without tau on a given ``excess`` (m^2), whose own change is the area's."""
     if number != MU:
         return float(getattr(solution, number))
-    return solution.friction_coefficient - solution.features.dmu_dA * excess
+    return solution.friction_coefficient - solution.details.features.dmu_dA * excess
 
 
 def _differences(seed: int) -> tuple[list[tuple[str, float]], int]:
@@ -58,14 +58,17 @@ def _differences(seed: int) -> tuple[list[tuple[str, float]], int]:
     """
     scene = random_scene(seed).scene
     solution = rf.solve(scene, M, tolerance=TIGHT)
-    found, excess = rf.sensitivity(scene, solution), solution.features.excess
+    found, excess = rf.sensitivity(scene, solution), solution.details.features.excess
     compared: list[tuple[str, float]] = []
     skipped = 0
     for name, value in differentiable_parameters(scene).items():
         low, high = (
             rf.solve(with_parameter(scene, name, value * (1 + s)), M, tolerance=TIGHT) for s in (-STEP, STEP)
         )
-        if not (np.array_equal(low.contact, high.contact) and np.array_equal(low.excluded, high.excluded)):
+        if not (
+            np.array_equal(low.contact, high.contact)
+            and np.array_equal(low.details.excluded, high.details.excluded)
+        ):
             skipped += 1
             continue
         for number in NUMBERS:

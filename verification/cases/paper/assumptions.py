@@ -163,7 +163,7 @@ def coupling() -> Measured:
         slid = rf.solve(scene, GRID["quick"])
         pressed = rf.solve(rough(FLATS[-1], BALL, k, friction=NO_FRICTION), GRID["quick"], oblique=True)
         tangential.append(pressed.friction_force / pressed.normal_force)
-        lifted = float(np.sum(slid.traction * np.sin(slid.theta_x))) * slid.grid.element_area
+        lifted = float(np.sum(slid.traction * np.sin(slid.slopes.theta_x))) * slid.grid.element_area
         normal.append(lifted / slid.normal_force)
     rms, share = (float(np.sqrt(np.mean(np.square(v)))) for v in (tangential, normal))
     sentence = (

@@ -148,7 +148,7 @@ def same_state() -> Measured:
     differing = {}
     for name in QUICK:
         found, dense = paper(name, TIGHT), trials()[name].dense
-        elements = (found.contact != dense.contact) | (found.excluded != dense.excluded)
+        elements = (found.contact != dense.contact) | (found.details.excluded != dense.details.excluded)
         differing[name] = int(np.count_nonzero(elements)) + (found.status is not dense.status)
     return Measured(sum(differing.values()), 0.0, unit="elements", data=differing)
 

@@ -57,7 +57,7 @@ def in_shares(solution: rf.Solution) -> tuple[float, float]:
     """
     solved = _solver(solution)
     onset = ONSET * solution.max_pressure
-    pressure, share = solution.pressure, (solution.contact & ~solution.excluded).astype(np.float64)
+    pressure, share = solution.pressure, (solution.contact & ~solution.details.excluded).astype(np.float64)
     length, last = np.full(share.shape, 0.5), np.zeros(share.shape)
     found = []
     for _ in range(UPDATES):
@@ -83,13 +83,13 @@ def _solver(solution: rf.Solution) -> Callable[[Array, Array], LevelSolver]:
 
     The function returned raises RuntimeError where the solver does not converge.
     """
-    problem, tau = solution.problem, solution.friction.jump
+    problem, tau = solution.details.problem, solution.details.friction.jump
     operator = window_influence(problem.grid, problem.direction)
     spectral = SpectralPreconditioner(operator, problem.elasticity.symbol(operator.symbol))
     precondition = extended(spectral, solution.contact)
 
     def solved(pressure: Array, share: Array) -> LevelSolver:
-        law = SharesOfTau(tau, solution.friction.slope, share)
+        law = SharesOfTau(tau, solution.details.friction.slope, share)
         solver = LevelSolver(replace(problem, friction=law), operator, precondition, pressure)
         if not solver.solve(TOLERANCE, FixedSet(share > 0)):
             raise RuntimeError(f"residual {solver.residual:.1e} with fixed shares of tau")
@@ -129,8 +129,8 @@ def apart(scenes: Sequence[tuple[int, int]], least: int) -> Measured:
         if solution.status is rf.Status.CYCLED:
             mu, moves_by = in_shares(solution)
             off = abs(mu - solution.friction_coefficient) + moves_by
-            bar = solution.uncertainty["friction_coefficient"]["active set"]
-            shares[f"{seed}: {solution.excluded.sum()} excluded"] = off / bar
+            bar = solution.uncertainty["friction_coefficient"]["active set"] or 0.0
+            shares[f"{seed}: {solution.details.excluded.sum()} excluded"] = off / bar
     note = f"{len(shares)} scenes that cycle, of {len(scenes)}"
     if len(shares) < least:
         raise RuntimeError(f"{note}: too few to judge by")

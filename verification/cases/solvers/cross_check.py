@@ -52,7 +52,7 @@ def pressure_difference(trial: Trial) -> float:
 def approach_difference(trial: Trial) -> float:
     """Difference of the approaches, relative and from first contact, where a periodic one is never zero."""
     dense, fft = trial.dense, trial.fft
-    return abs(dense.approach - fft.approach) / abs(dense.approach + dense.problem.datum)
+    return abs(dense.approach - fft.approach) / abs(dense.approach + dense.details.problem.datum)
 
 
 def area_difference(trial: Trial) -> float:
@@ -84,7 +84,7 @@ def contact_sets() -> Measured:
         trial.name
         for trial in trials()
         if not np.array_equal(trial.dense.contact, trial.fft.contact)
-        or not np.array_equal(trial.dense.excluded, trial.fft.excluded)
+        or not np.array_equal(trial.dense.details.excluded, trial.fft.details.excluded)
         or trial.dense.status is not trial.fft.status
     ]
     cycled = [trial.name for trial in trials() if trial.dense.status is rf.Status.CYCLED]

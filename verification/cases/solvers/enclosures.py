@@ -27,7 +27,7 @@ def solution(name: str, method: Method) -> rf.Solution:
 
 def approach(found: rf.Solution) -> float:
     """From first contact (m); a periodic solution's counts from the mean planes."""
-    mean = float(found.problem.gap.mean()) if found.grid.periodic else 0.0
+    mean = float(found.details.problem.gap.mean()) if found.grid.periodic else 0.0
     return found.approach + mean
 
 

@@ -112,7 +112,7 @@ def _bounded(problem: ContactProblem, pressure: Array, solution: rf.Solution) ->
         area = math.prod(problem.lengths)
         bounds = Bounds(found.pressure, found.pressure * math.sqrt(area), found.energy, 0.0, found.load)
         return bounds, found.in_contact, found.out_of_contact
-    proven = solution.bounds
+    proven = solution.details.bounds
     bounds = Bounds(proven.pressure, proven.pressure_l2, proven.energy, proven.approach, proven.normal_force)
     if not all(map(math.isfinite, vars(bounds).values())):
         raise NotCertified(proven.unproven)

@@ -53,7 +53,7 @@ def periodic_bound(problem: ContactProblem, solution: rf.Solution) -> PeriodicBo
     if f.min() < 0 or not f.max() > 0:
         return None
     load = float(f.sum()) * problem.element_area
-    by_load = replace(solution.problem, load=load, approach=None)
+    by_load = replace(solution.details.problem, load=load, approach=None)
     near = proven_bounds(by_load, f, solution.traction, solution.slopes)
     v = reference_solution.displacement(problem, f) + problem.gap
     noise = _rounding(v, touch)

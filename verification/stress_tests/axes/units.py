@@ -15,6 +15,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.planning.plan import Method
+from refimpl.solution.quantities import error_bound
 from verification.scenes.cross_checks import COPPER, STEEL
 from verification.stress_tests.judge import caught, verdict
 from verification.stress_tests.state import Extreme, Judged
@@ -83,7 +84,7 @@ def change(
     for name, factor in factors.items():
         found[name] = abs(getattr(scaled, name) / factor / getattr(base, name) - 1)
         if bars and name != "normal_force":
-            bar, base_bar = (s.uncertainty[name]["discretisation"] for s in (scaled, base))
+            bar, base_bar = (error_bound(s, name) for s in (scaled, base))
             found[f"the bar of {name}"] = abs(bar / factor / base_bar - 1)
     found["pressure"] = float(np.abs(scaled.pressure / pressure - base.pressure).max()) / base.max_pressure
     worst = max(found, key=lambda name: found[name])

@@ -1,0 +1,189 @@
+"""The numbers of a solution, declared once: symbol, unit, source, rule of the error bar, where shown.
+
+Prompt, command line, JSON, array files, sweeps and what ``accuracy=`` may be about are views of `Numbers`: a
+new number is one entry there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import overload
+
+from refimpl.accuracy import refinement
+from refimpl.errors import require_one_of
+from refimpl.grid import Array
+from refimpl.solution.details import Details
+
+Source = Callable[["Numbers"], float]
+Rule = Callable[["Numbers", "Quantity"], float | None]
+
+
+def own_parts(solution: Numbers, quantity: Quantity) -> float | None:
+    """The sum of the parts that are stated for the number; None without any, and where one is None."""
+    parts = solution.uncertainty.get(quantity.name, {}).values()
+    known = [part for part in parts if part is not None]
+    return math.fsum(known) if 0 < len(known) == len(parts) else None
+
+
+def _mean_pressure_error(solution: Numbers, quantity: Quantity) -> float | None:
+    """The force on the area: ``(P + dP) / (A - dA) - P / A``, with dP / P of N; unbounded where A is."""
+    area, force = solution.error("contact_area"), solution.error("normal_force")
+    if area is None or force is None:
+        return None
+    open_area, open_force = area / solution.contact_area, force / abs(solution.normal_force)
+    grown = (1 + open_force) / (1 - open_area) if open_area < 1 else math.inf
+    return solution.mean_pressure * (grown - 1)
+
+
+def _plastic_share_error(solution: Numbers, quantity: Quantity) -> float | None:
+    """``(A_p + dA_p) / (A - dA) - A_p / A``, and no more than a share leaves."""
+    area, plastic = solution.error("contact_area"), solution.error("plastic_area")
+    if area is None or plastic is None or not plastic + solution.plastic_area:
+        return plastic
+    share, least = solution.plastic_share, solution.contact_area - area
+    grown = (solution.plastic_area + plastic) / least if least > 0 else math.inf
+    return min(grown - share, max(share, 1 - share))
+
+
+def _area_share_error(solution: Numbers, quantity: Quantity) -> float | None:
+    """That of A over A0, which is exact."""
+    area = solution.error("contact_area")
+    return None if area is None else area / solution.details.grid.nominal_area
+
+
+def _mean_gap_error(solution: Numbers, quantity: Quantity) -> float | None:
+    """That of the bodies' distance, and the share of the displacements by which N is uncertain.
+
+    The distance is open as the approach is; mean displacements are in proportion to N and less than the
+    approach. Judged on 16 scenes of the kinds of the error bars on 48 and 96 against 384: all 32 covered, the
+    worst at 0.40 of the bar.
+    """
+    approach, force = solution.error("approach"), solution.error("normal_force")
+    if approach is None or force is None:
+        return None
+    return approach + abs(solution.approach) * force / abs(solution.normal_force)
+
+
+def _mean(pressure: Array) -> float:
+    """Of the elements in contact; 0 without contact."""
+    touching = pressure[pressure > 0]
+    return float(touching.mean()) if touching.size else 0.0
+
+
+@dataclass
+class Quantity:
+    """A number of a `Solution`, which reads it as an attribute of its name.
+
+    label : in printed tables
+    symbol : after the paper; empty for none
+    unit : SI
+    source : its value; None for that of this name in `Evidence.numbers`
+    rule : its error bar, in the same unit; None for a number without one
+    tables : which have a row of it: that of Python's "prompt", of the "command" line, of a "picture"
+    target : whether ``accuracy=`` may be about it
+    """
+
+    label: str
+    symbol: str
+    unit: str
+    source: Source | None = None
+    rule: Rule | None = own_parts
+    tables: tuple[str, ...] = ("prompt", "command")
+    target: bool = False
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    @overload
+    def __get__(self, solution: None, owner: type) -> Quantity: ...
+    @overload
+    def __get__(self, solution: Numbers, owner: type) -> float: ...
+    def __get__(self, solution: Numbers | None, owner: type) -> Quantity | float:
+        if solution is None:
+            return self
+        found = solution.details.evidence.numbers
+        return found[self.name] if self.source is None else self.source(solution)
+
+
+_EVERYWHERE = "prompt", "command", "picture"
+
+
+class Numbers:
+    """The numbers of a `Solution`, in the order of its tables, with their error bars."""
+
+    details: Details
+
+    friction_coefficient_corrected = Quantity(
+        "friction coefficient mu", "mu", "1", tables=_EVERYWHERE, target=True,
+        source=lambda s: s.details.features.numbers["friction_coefficient_corrected"],
+    )  # fmt: skip
+    friction_coefficient = Quantity("mu, summed over elements", "mu", "1", target=True)
+    contact_area = Quantity("contact area A", "A", "m^2", tables=_EVERYWHERE, target=True)
+    contact_area_corrected = Quantity(
+        "A, perimeter-corrected", "A", "m^2", tables=("command",), target=True,
+        source=lambda s: s.details.features.numbers["contact_area_corrected"],
+    )  # fmt: skip
+    contact_area_share = Quantity(
+        "A/A0", "A/A0", "1", tables=("prompt", "picture"), rule=_area_share_error,
+        source=lambda s: s.contact_area / s.details.grid.nominal_area,
+    )  # fmt: skip
+    plastic_area = Quantity("plastic area", "A_p", "m^2")
+    plastic_share = Quantity(
+        "plastic share of A", "A_p/A", "1", tables=("command",), rule=_plastic_share_error,
+        source=lambda s: s.plastic_area / s.contact_area if s.contact_area else 0.0,
+    )  # fmt: skip
+    max_pressure = Quantity("maximum pressure p_max", "p_max", "Pa", tables=_EVERYWHERE, target=True)
+    mean_pressure = Quantity(
+        "mean contact pressure", "p_mean", "Pa", tables=("prompt",), rule=_mean_pressure_error,
+        source=lambda s: _mean(s.details.state.pressure),
+    )  # fmt: skip
+    mean_gap = Quantity(
+        "mean gap", "", "m", tables=("prompt",), rule=_mean_gap_error,
+        source=lambda s: float(s.details.state.gap.mean()),
+    )  # fmt: skip
+    approach = Quantity("approach", "delta", "m", tables=_EVERYWHERE)
+    normal_force = Quantity("normal force N", "N", "N", tables=_EVERYWHERE)
+    friction_force_corrected = Quantity(
+        "friction force F", "F", "N",
+        source=lambda s: s.details.features.numbers["friction_force_corrected"],
+    )  # fmt: skip
+    friction_force = Quantity("F, summed over elements", "F", "N", tables=())
+    binormal_force = Quantity("transverse force Q", "Q", "N")
+
+    @cached_property
+    def uncertainty(self) -> Mapping[str, Mapping[str, float | None]]:
+        """For each reported number the parts of its error bar, absolute, in the number's unit.
+
+        Empty without contact. A part that nothing bounds is infinite; one for which there is no rule, None.
+        """
+        features = self.details.features
+        return refinement.uncertainty(self.details.grids or [features]) if features.touching else {}
+
+    def error(self, name: str) -> float | None:
+        """Return the error bar of a number, in its unit; inf where unbounded, None where no rule gives one.
+
+        Raises `InputError` for an unknown name.
+        """
+        require_one_of("error", name, QUANTITIES)
+        quantity = QUANTITIES[name]
+        return None if quantity.rule is None else quantity.rule(self, quantity)
+
+
+QUANTITIES = {name: found for name, found in vars(Numbers).items() if isinstance(found, Quantity)}
+REPORTED = tuple(name for name, quantity in QUANTITIES.items() if quantity.rule is own_parts)
+"""Numbers whose error bars have parts of their own, given by grids; others follow from those."""
+TARGETS = tuple(name for name, quantity in QUANTITIES.items() if quantity.target)
+
+
+def check_target(name: str) -> None:
+    """Raise `InputError` unless ``accuracy=`` may be about the number."""
+    require_one_of("quantity", name, TARGETS)
+
+
+def error_bound(solution: Numbers, name: str) -> float:
+    """Return the error bar of a number for what is computed with it: infinite without a rule."""
+    error = solution.error(name)
+    return math.inf if error is None else error
