@@ -62,9 +62,12 @@ PEAK_SCATTER, PEAK_FREEDOM = table("peak_scatter"), constant("peak_freedom")
 # units of friction without tau's share, and of Q: each of `rest_sizes`
 BULK_SCATTER, BULK_FREEDOM = table("bulk_scatter"), constant("bulk_freedom")
 BINORMAL_SCATTER, BINORMAL_FREEDOM = table("binormal_scatter"), constant("binormal_freedom")
-APPROACH_SCATTER, APPROACH_FREEDOM = table("approach_scatter"), constant("approach_freedom")  # `approach_sizes`
+APPROACH_SCATTER = table("approach_scatter")  # units: `approach_sizes`
+APPROACH_FREEDOM = constant("approach_freedom")
 FORCE = Prior(constant("force_scatter"), constant("force_freedom"))  # unit: value (edge / area)^1.5
-SHEAR_BOUNDS = {name: constant(f"shear_bound_{name}") for name in ("approach", "normal_force", "max_pressure")}
+SHEAR_BOUNDS = {
+    name: constant(f"shear_bound_{name}") for name in ("approach", "normal_force", "max_pressure")
+}
 """95 % bounds of the change by tau on the contact's edge, over its change of the depth: of the approach under
 a load, of the others at an approach. Set so that a smooth ball under tau of 0.7 of its pressure stays within
 its bars, and judged on random scenes (`verification.cases.error_bars.pulled`)."""

@@ -14,8 +14,8 @@ from dataclasses import replace
 from refimpl.accuracy.constants import constant
 from refimpl.accuracy.grid_features import GridFeatures
 
-PEAK_ERROR = constant("first_contact_smooth")  # standard deviation of the peak of a gap, over its curvature drop
-CREST_ERROR = constant("first_contact_crest")  # the like on a sharp crest, whose tip lies above the parabola
+# standard deviation of the peak of a gap, over its curvature drop; on a sharp crest, whose tip lies above it
+PEAK_ERROR, CREST_ERROR = constant("first_contact_smooth"), constant("first_contact_crest")
 HERTZ_EXPONENTS = {
     "normal_force": 1.5,
     "binormal_force": 1.5,

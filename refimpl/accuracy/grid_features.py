@@ -21,10 +21,12 @@ from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 
-EXCESS = np.array([*table("face_excess").ravel(), constant("straight_excess"), constant("border_excess")])
+EXCESS = np.array(
+    [*table("face_excess").ravel(), constant("straight_excess"), constant("border_excess")]
+)
 """Elements by which a counted area exceeds, of each of `GridFeatures.excess_terms`."""
 _LEVELS = 16  # pressures in `highest_areas`
-_TROUGH_ERROR = 0.05  # bound of the error of a parabola's trough over its second differences, where no gap was missed
+_TROUGH_ERROR = 0.05  # error of a parabola's trough over its second differences, where no gap was missed
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ _LEAST_SHARE = 1e-6  # in place of zero
 _LEAST_RESOLVED = 0.2  # share of gaps that are not single elements: a mean gap errs by no more
 _SLOPES = 2  # power of the share that is not single elements, which divides the scatter of slopes
 _ALONE = 5.5  # power of the share of single elements: patches of 2 x 2 have bars of all their area
-_RISING, _NARROW = 4, 5  # first kinds of faces towards which pressures do not fall, beyond which gaps do not rise
+_RISING, _NARROW = 4, 5  # first kinds of faces to which pressures do not fall, beyond which gaps do not rise
 AREA_SCATTER = table("area_scatter")  # elements, of each of `area_counts`
 _GAP_STRAIGHT = 3.5  # scatter of a gap's straight edges, over an area's
 PLASTIC_LACK = constant("plastic_lack")  # area that yields in part, over that of the edge
@@ -33,13 +33,15 @@ def area_counts(result: GridFeatures) -> Array:
 
     Faces of ordinary edges; those towards which pressures do not fall, beyond which gaps do not rise, and
     both; elements amid the contact that are undecided, and single ones: as symmetric ones come in and out
-    together. Then straight edges, squared, what uneven faces are of them, and what they are of narrow strips; and all faces towards which
-    pressures do not fall, squared, as they are of one rim.
+    together. Then straight edges, squared, what uneven faces are of them, and what they are of narrow
+    strips; and all faces towards which pressures do not fall, squared, as they are of one rim.
     """
-    dA, area, together = result.grid.element_area, result.numbers["contact_area"], result.symmetry_multiplicity
+    dA, together = result.grid.element_area, result.symmetry_multiplicity
+    area = result.numbers["contact_area"]
     faces = np.reshape(result.faces, KINDS).sum(axis=0)
     falling, rising = faces[:_RISING].sum(axis=0), faces[_RISING:].sum(axis=0)
-    kinds = [side[part].sum() for part in (slice(_NARROW), slice(_NARROW, None)) for side in (falling, rising)]
+    gaps = slice(_NARROW), slice(_NARROW, None)
+    kinds = [side[part].sum() for part in gaps for side in (falling, rising)]
     single = single_element_share(result.edge, area)
     alone = area / dA * single**_ALONE
     straight = result.straight.squares * max(min(together, result.straight.runs), 1)
@@ -95,7 +97,8 @@ def gap_scatter(result: GridFeatures) -> float:
 def plastic_sizes(fine: GridFeatures) -> Array:
     """Return sizes of the scatter of the area at the hardness (m^2): a count of its edge elements, its
     straight edges, and the excess of single elements."""
-    area, edge, dA = fine.numbers.get("plastic_area", 0.0), max(fine.plastic_edge, 0.0), fine.grid.element_area
+    area, dA = fine.numbers.get("plastic_area", 0.0), fine.grid.element_area
+    edge = max(fine.plastic_edge, 0.0)
     counted = math.sqrt(edge / EDGE_SHARE * dA * fine.symmetry_multiplicity)
     along = dA * math.sqrt(fine.plastic_straight.squares)
     return np.array([counted, along, edge, edge * single_element_share(edge, area) ** 2])

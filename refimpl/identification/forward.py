@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from refimpl.accuracy.discretisation_error import EXCESS_SPREAD
 from refimpl.driver.solve import solve
 from refimpl.errors import NotConverged
 from refimpl.grid import Array

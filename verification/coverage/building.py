@@ -1,6 +1,6 @@
-"""Building scenes of the error bars: solved on grids and a reference, their features stored, one JSON line each.
+"""Building scenes of the error bars: solved on grids and a reference, their features stored by JSON lines.
 
-A killed run goes on where it was. `packed` makes of the lines the file that is committed, which the fit reads.
+A killed run goes on where it was. `pack` makes of the lines the file that is committed, which the fit reads.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def solve_all(path: Path, seeds: Iterable[int], kinds: Iterable[str] = tuple(CLA
 
 def _solved(kind: str, seed: int) -> dict[str, Any]:
     """One line: without grids where one of them did not converge or has no contact."""
-    one, found = scene(kind, seed), []
+    one, found = scene(kind, seed), list[dict[str, Any]]()
     for M in (*GRIDS, REFERENCE):
         try:
             solution = rf.solve(one, grid=M)
@@ -103,11 +103,12 @@ def _records(path: Path) -> Iterator[dict[str, Any]]:
 
 def solved(path: Path) -> list[Solved]:
     """Return the scenes of a file of lines that were solved on the reference and a grid at least."""
-    return [
-        Solved(one["kind"], one["seed"], tuple(as_corrected(features_of(grid)) for grid in one["grids"]), one["exact"])
-        for one in _records(path)
-        if len(one["grids"]) > 1
-    ]
+    found = []
+    for one in _records(path):
+        grids = tuple(as_corrected(features_of(grid)) for grid in one["grids"])
+        if len(grids) > 1:
+            found.append(Solved(one["kind"], one["seed"], grids, one["exact"]))
+    return found
 
 
 def pack(scenes: Iterable[Solved], path: Path) -> None:
@@ -115,10 +116,10 @@ def pack(scenes: Iterable[Solved], path: Path) -> None:
 
     Of the grids every second one is kept, and the reference.
     """
-    rows = [
-        (one.kind, one.seed, one.exact, [_plain(grid) for grid in (*one.grids[one.seed % 2 : -1 : 2], one.grids[-1])])
-        for one in scenes
-    ]
+    rows = []
+    for one in scenes:
+        kept = *one.grids[one.seed % 2 : -1 : 2], one.grids[-1]
+        rows.append((one.kind, one.seed, one.exact, [_plain(grid) for grid in kept]))
     names = list(rows[0][3][0])
     columns = {name: [grid[name] for *_, grids in rows for grid in grids] for name in names}
     index = [[kind, seed, len(grids), dict(exact)] for kind, seed, exact, grids in rows]
@@ -138,7 +139,8 @@ def unpacked(path: Path) -> list[Solved]:
     ]
 
 
-_DIGITS = {"numbers": 6, "first_contact": 5, "peak": 5, "faces": 5}  # significant ones of features whose differences count
+# significant ones of features whose differences count
+_DIGITS = {"numbers": 6, "first_contact": 5, "peak": 5, "faces": 5}
 
 
 def _plain(grid: GridFeatures) -> dict[str, Any]:

@@ -44,7 +44,8 @@ class _Draw(Dice):
 
     def elements(self, low: float, high: float) -> float:
         """Return a length (m) of so many elements on one of `GRIDS`."""
-        return max(self.size) / self.log(GRIDS[0], GRIDS[-1]) * self.log(low, high)
+        spacing = float(max(self.size)) / self.log(GRIDS[0], GRIDS[-1])
+        return spacing * self.log(low, high)
 
     def lengths(self) -> tuple[float, float]:
         """Correlation lengths of a lay, three to ten to one within the shorter side."""

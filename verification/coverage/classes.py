@@ -1,4 +1,4 @@
-"""Error bars by class of scene: how the bars of stored scenes cover their errors (`verification.coverage.fit`).
+"""Error bars by class of scene: how those of stored scenes cover their errors (`verification.coverage.fit`).
 
 A scene is solved on grids of 48 to 128 elements along its longer side, and judged against a reference of
 three to eight times as many, or a number in closed form. Half of the scenes are free, half periodic; half are
@@ -95,6 +95,7 @@ def summary(rows: Iterable[dict[str, Any]]) -> dict[str, Any]:
     held = sum(row["error"] <= row["bar"] for row in rows)
     short = [row for row in rows if row["bar"] <= LARGEST_SHARE]
     finite = [row["bar"] / row["error"] for row in rows if row["error"] > 0]
+    missed = [row["error"] / row["bar"] for row in rows if row["error"] > row["bar"] > 0]
     bounded = [row for row in rows if math.isfinite(row["bar"])]
     off = sum(row["error"] * (1 if row["too_large"] else -1) for row in bounded)
     bars = sum(row["bar"] for row in bounded)
@@ -109,7 +110,7 @@ def summary(rows: Iterable[dict[str, Any]]) -> dict[str, Any]:
         "bias_over_bar": off / bars if bars else None,
         "median_bar_over_error": float(np.median(finite)) if finite else None,
         "unbounded": 1 - len(bounded) / len(rows),
-        "longest_miss": max((row["error"] / row["bar"] for row in rows if row["error"] > row["bar"] > 0), default=None),
+        "longest_miss": max(missed, default=None),
     }
 
 

@@ -23,8 +23,8 @@ from refimpl.accuracy.discretisation_error import approach_sizes, rest_sizes
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.scatter import area_counts, edge_scatter, plastic_sizes, straight_share
 from refimpl.grid import Array
-from verification.coverage.building import Solved, pack, solve_all, solved, unpacked
 from verification.coverage import classes
+from verification.coverage.building import Solved, pack, solve_all, solved, unpacked
 from verification.coverage.class_scenes import CLASSES
 from verification.coverage.likelihood import Fitted, fit
 from verification.framework.case import jsonable
@@ -130,9 +130,8 @@ def missed(features: GridFeatures) -> float:
 
 def rows_of(sample: Sample, scenes: Iterable[Solved]) -> tuple[Array, Array, Array]:
     """Return errors (n,), sizes of the mean's parts (n, k) and squared sizes of the scatter's (n, m)."""
-    rows = [
-        row for one in scenes for grid in one.grids[:-1] if (row := sample(grid, one.grids[-1], one)) is not None
-    ]
+    each = ((grid, one.grids[-1], one) for one in scenes for grid in one.grids[:-1])
+    rows = [row for three in each if (row := sample(*three)) is not None]
     errors, means, squares = (np.array(column) for column in zip(*rows, strict=True))
     return errors, means, squares
 
@@ -218,7 +217,9 @@ def fitted(scenes: Sequence[Solved]) -> dict[str, Constant]:
 def document(scenes: Sequence[Solved], before: Mapping[str, Constant]) -> dict[str, Any]:
     """Return the file of constants: those fitted, and of ``before`` those that no building scene gives."""
     found = fitted(scenes)
-    kept = {name: {"value": one["value"], "source": one.get("source", EARLIER)} for name, one in before.items()}
+    kept = {
+        name: {"value": one["value"], "source": one.get("source", EARLIER)} for name, one in before.items()
+    }
     seeds = sorted({one.seed for one in scenes})
     return {
         "provenance": provenance(),

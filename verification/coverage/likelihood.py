@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +13,7 @@ from refimpl.grid import Array
 
 @dataclass(frozen=True)
 class Fitted:
-    """Maximum of the likelihood: ``mean`` and ``scale`` with their standard errors, log-likelihood, freedom."""
+    """Maximum of the likelihood: ``mean``, ``scale`` and their standard errors, log-likelihood, freedom."""
 
     mean: Array
     mean_error: Array
@@ -64,9 +64,8 @@ def _fit(
         weight = (freedom + 1) / (freedom + ratio)
         logs = -constant + 0.5 * np.log(variance) + 0.5 * (freedom + 1) * np.log1p(ratio / freedom)
         by_variance = 0.5 * (1 - weight * ratio) / variance
-        slope = np.concatenate(
-            [precision @ mean - means.T @ (weight * rest / variance), 2 * variances * (squares.T @ by_variance)]
-        )
+        by_mean = precision @ mean - means.T @ (weight * rest / variance)
+        slope = np.concatenate([by_mean, 2 * variances * (squares.T @ by_variance)])
         return float(logs.sum() + 0.5 * mean @ precision @ mean), slope
 
     first = np.concatenate([np.zeros(k), np.full(m, np.log(start))])
@@ -74,12 +73,13 @@ def _fit(
     options = {"maxiter": 5000, "maxfun": 20000, "ftol": 1e-12}
     best = scipy.optimize.minimize(loss, first, jac=True, method="L-BFGS-B", bounds=bounds, options=options)
     deviation = np.sqrt(np.maximum(np.diag(np.linalg.pinv(_hessian(loss, best.x))), 0))
-    scale = np.exp(best.x[k:])
-    return Fitted(best.x[:k], deviation[:k], scale, deviation[k:] * scale, freedom, -float(best.fun), len(errors))
+    scale, top = np.exp(best.x[k:]), -float(best.fun)
+    return Fitted(best.x[:k], deviation[:k], scale, deviation[k:] * scale, freedom, top, len(errors))
 
 
-def _hessian(loss: object, x: Array) -> Array:
+def _hessian(loss: Callable[[Array], tuple[float, Array]], x: Array) -> Array:
     """Second derivatives by central differences of the gradient."""
     step = 1e-4
-    rows = [(loss(x + step * e)[1] - loss(x - step * e)[1]) / (2 * step) for e in np.eye(len(x))]  # type: ignore[operator]
-    return 0.5 * (np.array(rows) + np.transpose(rows))
+    rows = np.array([(loss(x + step * e)[1] - loss(x - step * e)[1]) / (2 * step) for e in np.eye(len(x))])
+    symmetric: Array = 0.5 * (rows + rows.T)
+    return symmetric

@@ -1,4 +1,4 @@
-"""Surfaces whose contacts do not end like a ball's: punches with a rounded rim, pads, dimples, steps, teeth."""
+"""Surfaces whose contacts do not end like a ball's: rounded punches, pads, dimples, steps, teeth."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 import refimpl as rf
-from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD
+from refimpl.accuracy.discretisation_error import EXCESS_SPREAD
 from refimpl.solution.quantities import error_bound
 from verification.cases import Measured, case
 from verification.cases.contact import hertz
