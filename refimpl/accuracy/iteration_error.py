@@ -18,10 +18,11 @@ from refimpl.model.problem import Problem
 
 AREAS = "contact_area", "contact_area_corrected"  # both depend on the same elements
 CORRECTED = {
+    "contact_area_corrected": "contact_area",
     "friction_coefficient_corrected": "friction_coefficient",
     "friction_force_corrected": "friction_force",
 }
-"""Friction without tau on the mean excess of the contact edge, by the number that it is subtracted from."""
+"""Numbers without the mean excess of the contact edge, by the number that it is subtracted from."""
 Parts = dict[str, float]
 Uncertainty = dict[str, Parts]
 
@@ -33,7 +34,6 @@ def reported_numbers(problem: Problem, state: State) -> dict[str, float]:
     return {
         "friction_coefficient": state.friction_coefficient,
         "contact_area": state.contact_area,
-        "contact_area_corrected": state.contact_area_corrected,
         "plastic_area": state.plastic_area,
         "max_pressure": state.max_pressure,
         "approach": state.approach - problem.datum,
