@@ -259,7 +259,7 @@ def _holds_once_more(
 
 
 def _loses_most(excluded: Mask, contact: Mask) -> bool:
-    return np.count_nonzero(excluded) > _MOST_EXCLUDED * np.count_nonzero(contact)
+    return bool(np.count_nonzero(excluded) > _MOST_EXCLUDED * np.count_nonzero(contact))
 
 
 def _loses(active: Mask) -> ContactTest:

@@ -202,9 +202,7 @@ def test_negative_control_contactmechanics_without_mean_stiffness_stops_at_once(
     pressure = np.asarray(fallen_in.pressure)
     assert fallen_in.converged is True
     assert np.ptp(pressure) < 1e-12 * pressure.max()
-    assert fails(
-        negative_controls.no_mean_stiffness, "solver/westergaard-pressure", "solver/rough-plane"
-    )
+    assert fails(negative_controls.no_mean_stiffness, "solver/westergaard-pressure", "solver/rough-plane")
 
 
 def fails(code: PublishedCode, *cases: str) -> bool:

@@ -133,9 +133,7 @@ def test_the_command_line_names_what_was_not_run(capfd: Capture) -> None:
     assert "not offer: periodic: westergaard-load" in printed
     assert "0 pass, 0 fail, 1 error, 1 unavailable" in printed
     assert "exit status 1: nothing said" in printed
-    assert (
-        main(["verify", "--exec", "true", "--able", "periodic,load", "--only", "solver/one-element"]) == 1
-    )
+    assert main(["verify", "--exec", "true", "--able", "periodic,load", "--only", "solver/one-element"]) == 1
 
 
 def test_a_name_that_is_no_utf_8_can_be_written(tmp_path: Path, capfd: Capture) -> None:
