@@ -7,16 +7,22 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import griffe
+from latex2mathml.converter import convert
 
+import refimpl
 from verification.cli import parser
 
 OUT = Path("out/pages")
 PACKAGES = ("refimpl", "appendix_a", *(f"verification/{x}" for x in ("framework", "solver_suite", "sweep")))
 SOURCE = re.compile(r"(?<=\]\()([\w./-]+\.(?:py|sh|cff))(?=\))")
+FIRST = ("solve", "Scene", "Solution", "Body", "Material", "Friction", "read_scene")  # what users call
 LAST = "---\nsearch: {boost: 5e-4}\n---\n\n"  # in search results, where titles count 1000 times
 NAMED = re.compile(r"^```(\w+) (\S+)$", flags=re.M)
 PACKAGE = f"{LAST}::: %s\n    options: {{heading_level: 1}}"
 DOCTEST = re.compile(r"^(>>> .*\n?(?:.+\n?)*)", flags=re.M)
+FORMULA = re.compile(
+    r"^```.*?^```$|`[^`\n]+`|^\$\$\n(?P<block>.+?)\n\$\$$|\$(?P<inline>[^$\s][^$\n]*)\$", flags=re.M | re.S
+)
 FIELD = re.compile(r"^(\*{0,2}\w+(?:, \w+)*) : (.+)$", flags=re.M)
 
 
@@ -32,9 +38,16 @@ class Docstrings(griffe.Extension):
         self.on_object(obj=mod)
 
 
+def formula(found: re.Match[str]) -> str:
+    """Return a formula as MathML, and code as it is."""
+    if found["block"]:
+        return f"<div class='formula'>{convert(found['block'], display='block')}</div>"
+    return f"<span>{convert(found['inline'])}</span>" if found["inline"] else found[0]
+
+
 def pages() -> Iterator[tuple[str, str]]:
     """Yield the name and the text of each page."""
-    globs = ("README.md", "CHANGELOG.md", "reports/**/R*.md", "docs/*.md")
+    globs = ("README.md", "C*.md", "SECURITY.md", "reports/**/R*.md", "docs/*.md")
     for path in [path for glob in globs for path in Path().glob(glob)]:
         text = (LAST if path.parts[0] == "reports" else "") + path.read_text(encoding="utf-8")
         for link in SOURCE.findall(text):
@@ -42,12 +55,18 @@ def pages() -> Iterator[tuple[str, str]]:
             shown = f"```{name.suffix[1:]}\n{name.read_text(encoding='utf-8')}```\n"
             yield f"{name}.md", f"{LAST}# {name}\n\n{shown}"
         text += "\n".join(options(parser())) if path.stem == "command-line" else ""
+        text = FORMULA.sub(formula, text)
         yield str(path), NAMED.sub(r'```\1 title="\2"', SOURCE.sub(r"\1.md", text)).replace(".ipynb)", ".md)")
     starts = [path.parent for top in PACKAGES for path in sorted(Path(top).rglob("__init__.py"))]
     packages = {".".join(start.parts): start for start in starts}
     for name, start in packages.items():
         modules = [f"::: {name}.{path.stem}" for path in sorted(start.glob("[!_]*.py"))]
-        yield f"api/{name}.md", "\n\n".join([PACKAGE % name, *modules])
+        order = ", ".join(dict.fromkeys([*FIRST, *refimpl.__all__]))
+        members = f"\n      group_by_category: false\n      members: [{order}]"
+        package = PACKAGE.replace(
+            "{heading_level: 1}", f"\n      heading_level: 1{members * (name == 'refimpl')}"
+        )
+        yield f"api/{name}.md", "\n\n".join([package % name, *modules])
     listed = "".join(f"- [{name}]({name}.md)\n" for name in packages)
     yield "api/README.md", f"# Functions and classes\n\nSI units; fields: shape `(Mx, My)`.\n\n{listed}"
 

@@ -1,4 +1,4 @@
-"""A solver of ten lines, put to the suite. Usage: check_my_solver.py [ID-GLOB] [PICTURE]"""
+"""A solver of ten lines, run through the suite. Usage: check_my_solver.py [ID-GLOB] [PICTURE]"""
 
 import sys
 
@@ -33,8 +33,8 @@ for r in ran:
 
 shares = [max((r.error or 0) / (r.tolerance or 1), 1e-9) for r in ran]
 colours = ["C0" if r.status == "pass" else "C1" for r in ran]
-figure, axes = plt.subplots(figsize=(7, 0.35 * len(ran) + 1.2), layout="constrained")
+figure, axes = plt.subplots(figsize=(5.6, 0.35 * len(ran) + 1.2), layout="constrained")
 axes.barh([r.id.partition("/")[2] for r in ran], shares, color=colours)
 axes.axvline(1, color="k", ls="--", lw=1)
-axes.set(xscale="log", xlabel="error over tolerance: passes are left of the dashed line")
+axes.set(xscale="log", xlabel="error over tolerance; below 1: pass")
 figure.savefig(PICTURE, dpi=100)

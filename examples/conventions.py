@@ -16,17 +16,14 @@ flat = rf.Body(rf.Material(E=2e6, nu=0.3), rf.Flat())
 scene = rf.Scene(ball, flat, rf.Friction(beta=0.6), load=0.12, side=5e-3, sliding_direction=phi)
 turned, s = rf.solve(scene, GRID), rf.solve(replace(scene, sliding_direction=0.0), GRID)
 x = (s.grid.x - 2.5e-3) * 1e3
-ahead, front = (
-    np.average(x, weights=s.pressure.sum(axis=1)),
-    s.slopes.theta_x[s.contact & (x[:, None] > 0)].max(),
-)
-print(f"centre of pressure at x = {ahead:+.3f} mm, theta_x in front up to {front:+.3f}")
-figure, (top, side) = plt.subplots(1, 2, figsize=(9.2, 3.6), layout="constrained", width_ratios=(1, 1.5))
+ahead, tilt = np.average(x, weights=s.pressure.sum(axis=1)), s.slopes.theta_x[s.contact & (x[:, None] > 0)]
+print(f"centre of pressure at x = {ahead:+.3f} mm, theta_x in front up to {tilt.max():+.3f}")
+figure, (top, side) = plt.subplots(2, 1, figsize=(5.6, 8), layout="constrained", height_ratios=(1.4, 1))
 top.contourf(x, x, turned.pressure.T, 5, cmap="Greys", vmax=3 * turned.max_pressure)
 top.set(xlabel="x (mm)", ylabel="y (mm)", aspect="equal", xlim=(-2, 2), ylim=(-2, 2), title="from above")
 side.plot(x, s.surfaces[1][:, GRID // 2] * 1e6, color=ORANGE, label="upper body: heights upwards")
 side.plot(x, s.surfaces[0][:, GRID // 2] * 1e6, color=BLUE, label="lower body: heights upwards")
-side.set(xlabel="x (mm)", ylabel="z (um)", xlim=(-1.8, 1.8), ylim=(-290, 380), title="section, phi = 0")
+side.set(xlabel="x (mm)", ylabel="z (um)", xlim=(-1.8, 1.8), ylim=(-420, 400), title="section, phi = 0")
 for axes, start, stop, colour, at, text in (
     (top, (0, 0), (1.3, 0.75), ORANGE, (0.6, 0.95), "sliding"),
     (top, (0, 0), (1.5, 0), "k", (0.8, 0.1), "phi"),
@@ -39,5 +36,5 @@ for axes, start, stop, colour, at, text in (
 ):
     axes.annotate("", stop, start, arrowprops={"arrowstyle": "-|>", "lw": 1.8, "color": colour})
     axes.annotate(text, at)
-side.legend(loc="lower center", fontsize=8, ncols=2)
+side.legend(loc="lower center", fontsize=9, ncols=1)
 figure.savefig(PICTURE, dpi=100)

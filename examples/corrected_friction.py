@@ -17,10 +17,10 @@ bars = [s.error("friction_coefficient_corrected") for s in found]
 for M, summed, corrected, bar in zip(GRIDS, raw, mu, bars, strict=True):
     print(f"{M:3}  summed {summed:.4f}, corrected {corrected:.4f} +- {bar:.4f}")
 
-figure, axes = plt.subplots(figsize=(6, 3.6), layout="constrained")
+figure, axes = plt.subplots(figsize=(5.6, 3.6), layout="constrained")
 axes.plot(GRIDS, raw, "s--", color="#D55E00", label="summed over elements, Eq. (4)")
 axes.errorbar(GRIDS, mu, bars, fmt="o-", color="#0072B2", capsize=3, label="corrected, with its error bar")
-axes.set(xscale="log", xlabel="elements a side", ylabel="friction coefficient")
+axes.set(xscale="log", xlabel="elements per side", ylabel="friction coefficient")
 axes.set_xticks(GRIDS, [str(M) for M in GRIDS])
 axes.minorticks_off()
 axes.legend()

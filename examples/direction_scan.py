@@ -20,14 +20,14 @@ across = np.array([s.binormal_force / scene.load for s in found])
 print(f"{COUNT} directions, {sum(s.status.name in ('CONVERGED', 'CYCLED') for s in found)} converged")
 print(f"mu from {mu.min():.4f} to {mu.max():.4f}, Q/P from {across.min():+.4f} to {across.max():+.4f}")
 
-figure, (upper, lower) = plt.subplots(2, 1, figsize=(6.4, 5), sharex=True, layout="constrained")
+figure, (upper, lower) = plt.subplots(2, 1, figsize=(5.6, 5), sharex=True, layout="constrained")
 upper.plot(np.degrees(angles), mu, "o-", ms=4)
 upper.set(ylabel="friction coefficient mu")
 lower.plot(np.degrees(angles), across, "s-", ms=4, color="C1")
 lower.axhline(0, color="k", lw=0.8)
 lower.set(
     xlabel="direction of sliding (degrees)",
-    ylabel="binormal force over load, Q / P",
+    ylabel="transverse force over load, Q / P",
     xticks=range(0, 361, 60),
 )
 figure.savefig(PICTURE, dpi=100)

@@ -16,7 +16,7 @@ PANELS = {"copper, flank": (None, 0.25), "copper, crest": (None, 0), "steel on c
 SLOPES, WAVELENGTHS = np.linspace(0.5, 30, 60), np.geomspace(8, 256, 40)  # degrees, element half-widths
 LEVELS, SHADES = (0.5, 1, 2, 5, 10), plt.get_cmap("cividis")(np.linspace(0, 1, 6))  # percent
 
-figure, panels = plt.subplots(1, 3, figsize=(8.0, 3.0), layout="constrained", sharey=True)
+figure, panels = plt.subplots(3, 1, figsize=(5.2, 7.4), layout="constrained", sharex=True)
 for axes, (title, (upper, place)) in zip(panels, PANELS.items(), strict=True):
     error = [
         [100 * coefficient_error(s, COPPER, upper, wavelength=w, position=place) for s in np.radians(SLOPES)]
@@ -24,12 +24,13 @@ for axes, (title, (upper, place)) in zip(panels, PANELS.items(), strict=True):
     ]
     filled = axes.contourf(SLOPES, WAVELENGTHS, error, LEVELS, colors=SHADES, extend="both")
     axes.contour(SLOPES, WAVELENGTHS, error, [2], colors="white", linewidths=2)
-    axes.set(title=title, xlabel="maximum slope (degrees)", yscale="log")
+    axes.set(title=title, yscale="log")
+    axes.set_yticks([8, 32, 128], ["8", "32", "128"])
+    axes.minorticks_off()
     at = [float(np.interp(10, SLOPES, row)) for row in error]
     print(f"{title}, 10 degrees: {at[0]:.1f} % on waves of 8 half-widths, {at[-1]:.1f} on 256")
-panels[0].set_ylabel("wavelength (element half-widths)")
-panels[0].set_yticks([8, 16, 32, 64, 128, 256], ["8", "16", "32", "64", "128", "256"])
-panels[0].minorticks_off()
+panels[1].set_ylabel("wavelength (element half-widths)")
+panels[2].set_xlabel("maximum slope (degrees)")
 figure.colorbar(filled, ax=panels, label=f"error in line (%), nu = {NU:g}", format="%g")
-figure.savefig(PICTURE, dpi=90)
+figure.savefig(PICTURE, dpi=100)
 Image.open(PICTURE).convert("RGB").quantize(64).save(PICTURE, optimize=True)

@@ -12,7 +12,7 @@ PICTURE = sys.argv[2] if len(sys.argv) > 2 else "half_space_wave.png"
 
 [wave] = [c for c in committed(NAME)["cases"] if c["id"] == "model-form/half-space-wave"]
 slopes = wave["data"]["slope (degrees)"]
-figure, panels = plt.subplots(1, 2, figsize=(7.2, 3.2), layout="constrained")
+figure, panels = plt.subplots(2, 1, figsize=(5.2, 6.2), layout="constrained")
 for axes, name in zip(panels, ("approach under the load", "N at the approach"), strict=True):
     found, first, stated = (
         [abs(value) for value in wave["data"][f"{name}: {part} (%)"]]
@@ -26,5 +26,5 @@ for axes, name in zip(panels, ("approach under the load", "N at the approach"), 
     at = slopes.index(15.0)
     print(f"15 degrees, {name}: {found[at]:.1f} %, first order {first[at]:.1f}, stated {stated[at]:.1f}")
 panels[0].legend(frameon=False)
-figure.savefig(PICTURE, dpi=90)
+figure.savefig(PICTURE, dpi=100)
 Image.open(PICTURE).convert("RGB").quantize(64).save(PICTURE, optimize=True)

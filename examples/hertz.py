@@ -30,7 +30,7 @@ print(
 
 x = (np.arange(GRID) + 0.5) * SIDE / GRID - SIDE / 2
 fine = np.linspace(-contact_radius, contact_radius, 400)
-figure, axes = plt.subplots(figsize=(6.4, 4), layout="constrained")
+figure, axes = plt.subplots(figsize=(5.6, 3.8), layout="constrained")
 axes.plot(fine * 1e3, peak / 1e6 * np.sqrt(1 - (fine / contact_radius) ** 2), "k-", lw=1, label="Hertz")
 axes.plot(x * 1e3, found.pressure[:, GRID // 2] / 1e6, "o", ms=3, label=f"{GRID} x {GRID} elements")
 axes.set(xlabel="x (mm)", ylabel="pressure (MPa)", xlim=np.array([-1.5, 1.5]) * contact_radius * 1e3)

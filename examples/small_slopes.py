@@ -1,4 +1,4 @@
-"""Slope terms against the classical small-slope theory, by a / R. Usage: small_slopes.py [GRID] [PICTURE]"""
+"""Slope terms against the small-slope approximation, by a / R. Usage: small_slopes.py [GRID] [PICTURE]"""
 
 import math
 import sys
@@ -9,7 +9,7 @@ import refimpl as rf
 
 GRID = int(sys.argv[1]) if len(sys.argv) > 1 else 128
 PICTURE = sys.argv[2] if len(sys.argv) > 2 else "small_slopes.png"
-RADIUS, SHARES = 1e-3, (0.05, 0.1, 0.2, 0.33)  # m; Hertz's contact radius over that of the ball
+RADIUS, SHARES = 1e-3, (0.02, 0.05, 0.1, 0.15, 0.2, 0.26, 0.33)  # m; Hertz's contact radius over the ball's
 
 soft, rigid = rf.Material(E=1e9, nu=0.3), rf.Material(E=math.inf, nu=0.3)
 excess = []
@@ -28,6 +28,7 @@ for share in SHARES:
 
 figure, axes = plt.subplots(figsize=(5.2, 3.4), layout="constrained")
 axes.plot(SHARES, excess, "o-")
-axes.set(xlabel="a / R", ylabel="p_max with slope terms over oblique=False (+ %)")
+axes.set(xlabel="contact radius over ball radius, a / R", ylabel="excess of p_max (%)")
+axes.set_title("p_max with slope terms over oblique=False", fontsize=11)
 axes.grid(alpha=0.3)
 figure.savefig(PICTURE, dpi=100)

@@ -21,13 +21,13 @@ map_, flat = rf.Body(steel, measured), rf.Body(steel, rf.Flat())
 scenes = {"lower": rf.Scene(flat, map_, friction, 0.05), "upper": rf.Scene(map_, flat, friction, 0.05)}
 heights = {name: scene.sampled(scene.grid(GRID))[name == "upper"] for name, scene in scenes.items()}
 
-figure, panels = plt.subplots(1, 3, figsize=(9.6, 2.9), layout="constrained", sharey=True)
+figure, panels = plt.subplots(3, 1, figsize=(5.2, 7.6), layout="constrained", sharex=True)
 shown = {"picture of the instrument": np.load("letter.npy") * 1e-6}
 shown |= {"on the lower body: z(x, y)": heights["lower"], "on the upper body: -z(x, -y)": heights["upper"]}
 for axes, (title, z) in zip(panels, shown.items(), strict=True):
     drawn, extent = (z - z.min()).T * 1e6, (-0.48, 0.48, -0.32, 0.32)
     image = axes.imshow(drawn, origin="lower", extent=extent, cmap="cividis", vmax=2)
-    axes.set(title=title, xlabel="x (mm)")
+    axes.set(title=title, xlabel="x (mm)" if axes is panels[2] else "", ylabel="y (mm)")
 for axes, (name, scene) in zip(panels[1:], scenes.items(), strict=True):
     found = rf.solve(scene, GRID)
     touching = np.unravel_index(np.argmax(found.pressure), found.pressure.shape)
@@ -35,6 +35,6 @@ for axes, (name, scene) in zip(panels[1:], scenes.items(), strict=True):
     print(f"on the {name} body it touches first at x = {px:+.2f}, y = {py:+.2f} mm")
     axes.plot(px, py, "r*", label="touches first")
     axes.quiver([0.2, 0.2], [-0.05, -0.05], [1, 0], [0, 1], color=["r", "tab:cyan"], scale=8)
-panels[1].legend(loc="lower right", fontsize=8)
+panels[1].legend(loc="lower right", fontsize=9)
 figure.colorbar(image, ax=panels, label="z, upwards (um)")
 figure.savefig(PICTURE, dpi=100)

@@ -16,8 +16,9 @@ from tests.documents import ROOT, agree
 from verification.cases.appendix_a import half_space
 
 EXAMPLES = {
+    "first_result": (["64"], "mu = 0.1189 +- 0.0019, A = ... mm^2, p_max = 0.800 GPa (converged)"),
     "hertz": (["32"], "converged: peak 165.79 MPa, -2.9e-03 of Hertz' 166.27"),
-    "rough_friction": (["0.2"], "converged on 64 x 64\nmu = 0.1058 +- 0.0033\nA  = 0.1164 +- ... mm^2"),
+    "rough_friction": (["0.05"], "converged on 64 x 64\nmu = 0.1366 +- 0.0015\nA  = 0.2313 +- ... mm^2"),
     "check_my_solver": (["solver/pins"], "pass solver/pins ... of 2.0e+00"),
     "which_way_up": (
         ["32"],
@@ -25,7 +26,7 @@ EXAMPLES = {
         "on the upper body it touches first at x = +0.20, y = -0.21 mm",
     ),
     "conventions": (["33"], "centre of pressure at x = -0.046 mm, theta_x in front up to +0.088"),
-    "small_slopes": (["32"], "a / R = 0.05: p_max +0.1 %\n...a / R = 0.33: p_max +6.3 %"),
+    "small_slopes": (["32"], "a / R = 0.02: p_max +0.0 %\n...a / R = 0.33: p_max +6.3 %"),
     "half_space_map": (
         ["0.3"],
         "copper, flank, 10 degrees: 4.8 % on waves of 8 half-widths, 5.2 on 256\n"
@@ -59,7 +60,7 @@ def test_no_example_is_left_out() -> None:
     assert [name for name, size in sizes.items() if not 5_000 < size <= 120_000] == []
 
 
-IN_CI = ("hertz", "rough_friction", "conventions")
+IN_CI = ("hertz", "first_result", "conventions")
 
 
 @pytest.mark.parametrize(

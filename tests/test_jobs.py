@@ -68,6 +68,7 @@ def test_every_job_is_run_here_and_copies_no_data() -> None:
     assert all(os.access(path, os.X_OK) for path in JOBS.glob("*.sh"))
 
 
+@pytest.mark.nightly
 def test_a_sweep_is_interrupted_and_goes_on(job: Path) -> None:
     started = subprocess.Popen(
         ["bash", "loads.sh"], cwd=job, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,

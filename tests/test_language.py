@@ -1,4 +1,4 @@
-"""The language of code, docstrings, messages and names: what of ``language.toml`` no reader should meet.
+"""The language of names, docstrings, messages, pages and report: no pattern of `language.toml`, no long text.
 
 An exception stands in ``EXCEPTIONS`` or ``KEPT`` with its reason; one that matches nothing any more fails.
 """
@@ -13,7 +13,10 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
+
 from tests.layers import ROOT
+from tests.prose import paragraphs, plain, too_long, visible
 
 PACKAGES = ("refimpl", "appendix_a", "verification", "reports")
 LANGUAGE = tomllib.loads((ROOT / "tests/language.toml").read_text(encoding="utf-8"))
@@ -127,13 +130,71 @@ def test_no_pattern_is_used_but_for_exceptions() -> None:
     assert set(EXCEPTIONS) <= {(m[0], m[2].lower()) for m in matches}  # each is needed
 
 
-def test_pages_speak_the_same_language() -> None:
-    """The prose of docs/: blocks and tables have names of commands, files and recorded results."""
-    for page in sorted((ROOT / "docs").glob("*.md")):
-        prose = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
-        lines = [line for line in prose.splitlines() if not line.startswith(("#", "|"))]
-        used = [m for line in lines for p in PATTERNS if (m := re.search(p["match"], line, re.IGNORECASE))]
-        assert [(page.name, match.group()) for match in used] == []
+def prose() -> dict[str, list[str]]:
+    """Paragraphs by page, template, or list of claims."""
+    files = [*(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "SECURITY.md"))]
+    files += sorted((ROOT / "docs").glob("*.md"))
+    found = {path.name: list(paragraphs(path.read_text(encoding="utf-8"))) for path in files}
+    found["docs/README.md"] = list(paragraphs((ROOT / "docs/README.md").read_text(encoding="utf-8")))
+    found["README.md"] = list(paragraphs((ROOT / "README.md").read_text(encoding="utf-8")))
+    for path in sorted((ROOT / "reports/templates").glob("*.html")):
+        found[path.name] = list(visible(path.read_text(encoding="utf-8")))
+    claims = tomllib.loads((ROOT / "reports/paper.toml").read_text(encoding="utf-8"))["claim"]
+    found["paper.toml"] = [plain(claim["finding"]) for claim in claims if "finding" in claim]
+    return found
+
+
+PROSE = prose()
+UNREAD = {"paper.toml", *(name for name in PROSE if name.endswith(".html"))}
+"""Texts of the report, which do not keep to the lengths yet."""
+
+LONG: dict[tuple[str, str], str] = {}
+"""Reasons, by text and beginning of a long sentence or paragraph; 40 at most."""
+
+REPORTED = {
+    ("notation.md", "binormal"): "name of the attribute",
+}
+"""Reasons of words, by text and match."""
+
+
+@pytest.mark.parametrize("name", PROSE)
+def test_sentences_and_paragraphs_are_short(name: str) -> None:
+    if name in UNREAD:
+        pytest.skip("a text of the report, not yet rewritten")
+    found = list(too_long(iter(PROSE[name])))
+    allowed = [start for text, start in LONG if text == name]
+    assert [text for text in found if not text.startswith(tuple(allowed) or ("\0",))] == []
+    assert [start for start in allowed if not any(text.startswith(start) for text in found)] == []
+    assert len(LONG) <= 40
+
+
+@pytest.mark.parametrize("name", PROSE)
+def test_pages_have_the_terms_of_the_glossary(name: str) -> None:
+    """Prose alone: tables and blocks have names of commands, files and recorded results."""
+    if name in UNREAD:
+        pytest.skip("a text of the report, not yet rewritten")
+    patterns = [*PATTERNS, *LANGUAGE["prose"]]
+    found = (re.search(p["match"], text, re.I) for text in PROSE[name] for p in patterns)
+    matches = [match.group() for match in found if match]
+    assert [match for match in matches if (name, match.lower()) not in REPORTED] == []
+
+
+@pytest.mark.parametrize("package", LANGUAGE["docstrings"]["packages"])
+def test_docstrings_of_functions_begin_with_an_imperative(package: str) -> None:
+    verbs = LANGUAGE["docstrings"]["imperatives"].split()
+    first = {where: text.split()[0] for where, text in summaries(package)}
+    assert {where: word for where, word in first.items() if word not in verbs} == {}
+
+
+def summaries(package: str) -> Iterator[tuple[str, str]]:
+    """Yield place and docstring of each public function of a package that is no case and no property."""
+    for path in sorted((ROOT / package).rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            text = ast.get_docstring(node) if isinstance(node, ast.FunctionDef) else None
+            if isinstance(node, ast.FunctionDef) and text and not node.name.startswith("_"):
+                marks = " ".join(ast.unparse(mark) for mark in node.decorator_list)
+                if not re.search("case|family|property|given", marks):
+                    yield f"{path.relative_to(ROOT)}:{node.lineno}", text
 
 
 def test_a_pattern_is_found_where_it_stands() -> None:

@@ -62,7 +62,7 @@ def test_it_is_committed_without_outputs(name: str) -> None:
     assert cells(name)[0]["source"][0].startswith("# ")
 
 
-IN_CI = "checking_a_solver"
+IN_CI = "ball_on_rough_flat"
 
 
 @pytest.mark.parametrize(

@@ -84,6 +84,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.nightly
 def test_every_subcommand_runs_without_what_only_posix_has(tmp_path: Path) -> None:
     rows = "load,mu,u_mu\n5,0.41,0.01\n9,0.33,0.01\n24,0.27,0.01\n"
     files = {"sitecustomize.py": HIDE, "run.py": RUN, "jobs.json": json.dumps(list(JOBS)), "data.csv": rows}

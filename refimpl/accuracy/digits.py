@@ -6,7 +6,7 @@ import math
 
 LARGEST_SHARE = 0.5  # largest usable bar over the value: beyond, the number is known to a factor of 3 at best
 MOST_DIGITS = 6  # significant digits of a number whose bar is shorter than they show, or zero
-UNKNOWN_DIGITS = 3  # of a number whose bar is not known
+UNKNOWN_DIGITS = 3  # significant digits of a number whose bar is not known
 _FIXED = 1e-4, 1e6  # magnitudes that are printed without an exponent
 
 

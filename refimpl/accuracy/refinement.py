@@ -7,7 +7,7 @@ grids, so the next grid is usually the last, and all earlier grids together cost
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from refimpl.accuracy.discretisation_error import discretisation, estimates
@@ -21,6 +21,8 @@ MAX_REFINEMENT = 8  # next grid over the last: predictions from two coarse grids
 MAX_BLIND_REFINEMENT = 2  # ratio where the bar predicts nothing: longer than the number, or of short waves
 _SHORT_WAVES = 0.5  # waviness from which bars fall faster than they predict, as waves are resolved
 _MARGIN = 0.95  # share of the accuracy that a predicted bar may take
+_REST = 0.25  # of the parts that no grid reduces: what others may add, and neglected terms of the room left
+AIM = 1 + _REST  # bar over the parts that no grid reduces, at which a refinement that they end does end
 _ITERATION_SHARE = 1e-3  # share of the accuracy that unfinished iterations may take
 
 
@@ -57,35 +59,48 @@ def refine_until(
     grid_sizes: Iterable[int] = GRID_SIZES,
     *,
     slenderness: int = 1,
-    finest_by_data: float = math.inf,
+    data: DataShares | None = None,
+    restored: Callable[[], GridFeatures | None] = lambda: None,
 ) -> Refinement:
     """Solve grid after grid until the bar of ``quantity`` is within ``accuracy`` times its value.
 
     On a slender domain all numbers of elements along the longer side are ``slenderness`` times larger.
 
-    An accuracy that even the finest size cannot give ends the refinement. A grid that ``features_at`` refuses
-    by `InputError` (memory, limits) is replaced by the next coarser one, as long as that is finer than the
-    last: a demand that cannot be met within limits ends on the finest grid within them, as looser ones do.
-    One that is `Unfinished` ends the refinement on the grid before. The part that tau's active set leaves
-    open need not fall on finer grids: where it has not fallen and exceeds the accuracy, the refinement ends.
-    Where the data leave more open than the accuracy, no grid is finer than ``finest_by_data`` elements along
-    the longer side.
+    Parts that no grid reduces (`unfalling`) are summed first. Where they exceed the accuracy, grids are
+    refined until the rest is a quarter of them, and no finer than the data deserve; then the refinement ends
+    with a reason. Neglected terms are put back by ``restored``, which solves the last grid again, once they
+    take more than a quarter of what those parts leave. An accuracy that even the finest size cannot give ends
+    the refinement. A grid that ``features_at`` refuses by `InputError` (memory, limits) is replaced by the
+    next coarser one, as long as that is finer than the last: a demand that cannot be met within limits ends
+    on the finest grid within them, as looser ones do. One that is `Unfinished` ends the refinement on the
+    grid before.
     """
+    data = data or DataShares()
     results = [features_at(M * slenderness) for M in FIRST_GRIDS]
     remaining, refusal = [M * slenderness for M in grid_sizes], ""
-    while results[-1].touching and relative_bound(results, quantity) > accuracy:
-        if reason := reason_unreachable(results, accuracy, quantity):
-            return Refinement(tuple(results), reason)
-        last = longer_side(results[-1])
+    while results[-1].touching and (bound := relative_bound(results, quantity)) > accuracy:
+        if math.isinf(_own_bound(results[-1], quantity)):
+            return Refinement(tuple(results), _CUT_OFF)
+        value, last = abs(results[-1].numbers[quantity]), longer_side(results[-1])
+        stuck = unfalling(results, quantity, data)
+        least = sum(stuck.values()) / value if value else 0.0
+        if neglected_matter(results[-1], quantity, accuracy * value - least * value):
+            again = restored()
+            if again is not None:
+                results[-1] = again
+                continue
+        hopeless = reason_unreachable(stuck, value, accuracy) if least > accuracy else ""
+        aim = AIM * least if hopeless else accuracy
         remaining = [M for M in remaining if last < M]
-        data = REMAINING_PARTS["data"] if exceeds("data", results[-1], accuracy, quantity) else ""
-        useful = [M for M in remaining if not data or finest_by_data >= M]
-        if useful and not refusal and (needed := least_size(results, accuracy, quantity)) > max(useful):
+        useful = [M for M in remaining if not hopeless or data.finest >= M]
+        if hopeless and (bound <= aim or not useful):
+            return Refinement(tuple(results), hopeless)
+        if useful and not refusal and (needed := least_size(results, aim, quantity)) > max(useful):
             size = f"at least {needed:.2g} elements a side, more than {max(useful)}"
-            return Refinement(tuple(results), data or f"by the bars so far it takes {size}")
+            return Refinement(tuple(results), hopeless or f"by the bars so far it takes {size}")
         if not useful:
-            return Refinement(tuple(results), data or refusal or f"at most {last} elements a side are tried")
-        M = next_grid(results, accuracy, quantity, useful)
+            return Refinement(tuple(results), refusal or f"at most {last} elements a side are tried")
+        M = next_grid(results, aim, quantity, useful, data)
         try:
             results.append(features_at(M))
         except InputError as refused:
@@ -95,14 +110,58 @@ def refine_until(
     return Refinement(tuple(results), "")
 
 
-def reason_unreachable(results: Sequence[GridFeatures], accuracy: float, quantity: str) -> str:
-    """Return why no finer grid can reach an accuracy; empty where none is known not to."""
-    if math.isinf(_own_bound(results[-1], quantity)):
-        return "the domain cuts the contact off: enlarge it"
-    reasons = (
-        text for part, text in REMAINING_PARTS.items() if no_longer_falls(part, results, accuracy, quantity)
-    )
-    return next(reasons, "")
+@dataclass(frozen=True)
+class DataShares:
+    """What the points of measured surfaces leave open: ``left`` share of the contact area by elements along
+    the longer side; ``finest`` elements that the data deserve."""
+
+    left: Callable[[int], float] = lambda M: 0.0
+    finest: float = math.inf
+
+    def factor(self, M: int, finer: float) -> float:
+        """Return the part of the data on ``finer`` elements over that on M."""
+        here = self.left(M)
+        return self.left(round(finer)) / here if here > 0 else 1.0
+
+
+def unfalling(results: Sequence[GridFeatures], quantity: str, data: DataShares) -> dict[str, float]:
+    """Return the parts that no grid reduces, in the number's unit: data and border as they will be left, and
+    tau's active set where it did not fall on the last grid."""
+    last = longer_side(results[-1])
+    own = results[-1].parts.get(quantity, {})
+    most = max(last, data.finest) if math.isfinite(data.finest) else last
+    found = {"data": own.get("data", 0.0) * data.factor(last, most), "border": own.get("border", 0.0)}
+    if len(results) > len(FIRST_GRIDS):
+        coarse = results[-2].parts.get(quantity, {}).get("active set", 0.0)
+        here = own.get("active set", 0.0)
+        found["active set"] = here if here >= coarse else 0.0
+    return found
+
+
+def neglected_matter(result: GridFeatures, quantity: str, room: float) -> bool:
+    """Return whether neglected terms take more than a quarter of the room that other parts leave."""
+    return room > 0 and result.parts.get(quantity, {}).get("neglected", 0.0) > _REST * room
+
+
+def reason_unreachable(stuck: Mapping[str, float], value: float, accuracy: float) -> str:
+    """Return which parts exceed the accuracy on every grid, their sizes, and what would help."""
+    if math.isinf(sum(stuck.values())):
+        return _CUT_OFF
+    sizes = {name: part / value for name, part in stuck.items() if part > 0}
+    if not sum(sizes.values()) > accuracy:
+        return ""
+    largest = max(sizes, key=lambda name: sizes[name])
+    shown = " and ".join(f"{_STUCK[name][0]} {size:.2g}" for name, size in sizes.items())
+    return f"no grid reduces what is left open by {shown} of it; {_STUCK[largest][1]}"
+
+
+_CUT_OFF = "the domain cuts the contact off: enlarge it"
+_STUCK = {
+    "data": ("what lies between the points of the data", "a map with a finer pitch would"),
+    "border": ("the contact beyond the border", "a larger domain would"),
+    "active set": ("tau's active set", "of the number, a larger accuracy is what can be had"),
+}
+"""Parts that no grid reduces: what leaves them open, and what would help."""
 
 
 def longer_side(features: GridFeatures) -> int:
@@ -111,7 +170,11 @@ def longer_side(features: GridFeatures) -> int:
 
 
 def next_grid(
-    results: Sequence[GridFeatures], accuracy: float, quantity: str, grid_sizes: Sequence[int]
+    results: Sequence[GridFeatures],
+    accuracy: float,
+    quantity: str,
+    grid_sizes: Sequence[int],
+    data: DataShares | None = None,
 ) -> int:
     """Return the coarsest size whose predicted bar is short enough, within reach of the last grid."""
     fine = results[-1]
@@ -119,20 +182,29 @@ def next_grid(
     predictable = within and fine.waviness < _SHORT_WAVES
     ratio = MAX_REFINEMENT if predictable else MAX_BLIND_REFINEMENT
     reach = [size for size in grid_sizes if size <= ratio * longer_side(fine)] or grid_sizes[:1]
-    return predicted_size(results, accuracy, quantity, reach) or reach[-1]
+    return predicted_size(results, accuracy, quantity, reach, data) or reach[-1]
 
 
 def predicted_size(
-    results: Sequence[GridFeatures], accuracy: float, quantity: str, grid_sizes: Sequence[int]
+    results: Sequence[GridFeatures],
+    accuracy: float,
+    quantity: str,
+    grid_sizes: Sequence[int],
+    data: DataShares | None = None,
 ) -> int | None:
-    """Return the coarsest size whose predicted bar is short enough; None if none is."""
-    fine = results[-1]
+    """Return the coarsest size whose predicted bar is short enough; None if none is.
+
+    The data's part is known on every grid, that of neglected terms stays, the others fall by their order.
+    """
+    fine, data = results[-1], data or DataShares()
     found, estimate = fine.numbers[quantity], estimates(results)[quantity]
-    own, order = _own_bound(fine, quantity), _own_order(results, quantity)
+    parts, last, order = fine.parts.get(quantity, {}), longer_side(fine), _own_order(results, quantity)
+    by_data, neglected = parts.get("data", 0.0), parts.get("neglected", 0.0)
+    falling = _own_bound(fine, quantity) - by_data - neglected
     for M in grid_sizes:
-        finer = longer_side(fine) / M
-        bound = estimate.predicted_bound(found, finer) + own * finer**order
-        if bound <= _MARGIN * accuracy * abs(found):
+        finer = last / M
+        bound = estimate.predicted_bound(found, finer) + falling * finer**order + neglected
+        if bound + by_data * data.factor(last, M) <= _MARGIN * accuracy * abs(found):
             return M
     return None
 
@@ -142,35 +214,19 @@ def _own_bound(features: GridFeatures, quantity: str) -> float:
     return sum(features.parts.get(quantity, {}).values())
 
 
+_KNOWN = ("data", "neglected")  # parts on finer grids that are known
+
+
 def _own_order(results: Sequence[GridFeatures], quantity: str) -> float:
     """Order at which that falls, from the last two grids, between 0 and 1; 1 for the first two grids."""
-    coarse, fine = (_own_bound(result, quantity) for result in results[-2:])
+    coarse, fine = (
+        sum(size for name, size in result.parts.get(quantity, {}).items() if name not in _KNOWN)
+        for result in results[-2:]
+    )
     if len(results) == len(FIRST_GRIDS) or not min(coarse, fine) > 0:
         return 1.0
     refinement = longer_side(results[-1]) / longer_side(results[-2])
     return min(max(math.log(coarse / fine) / math.log(refinement), 0.0), 1.0)
-
-
-REMAINING_PARTS = {
-    "active set": "tau's active set leaves more than that open, and no less on finer grids",
-    "data": "what lies between the points of the data leaves more than that open, and no less on finer grids",
-}
-"""Parts that need not fall on finer grids, and what is said where they do not."""
-
-
-def no_longer_falls(part: str, results: Sequence[GridFeatures], accuracy: float, quantity: str) -> bool:
-    """Return whether a part leaves more than the accuracy open, no less than on the grid before, and most of
-    all that is open."""
-    if len(results) == len(FIRST_GRIDS):
-        return False
-    coarse, fine = (result.parts.get(quantity, {}).get(part, 0.0) for result in results[-2:])
-    most = 2 * fine >= sum(uncertainty(results)[quantity].values())
-    return fine >= coarse and most and exceeds(part, results[-1], accuracy, quantity)
-
-
-def exceeds(part: str, result: GridFeatures, accuracy: float, quantity: str) -> bool:
-    """Return whether a part alone leaves more than the accuracy open."""
-    return result.parts.get(quantity, {}).get(part, 0.0) > accuracy * abs(result.numbers[quantity])
 
 
 def least_size(results: Sequence[GridFeatures], accuracy: float, quantity: str) -> float:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from refimpl.accuracy.refinement import check_accuracy, tolerance_for
 from refimpl.driver.limits import Limits
-from refimpl.errors import InputError, keep_doubles, require_number, require_one_of
+from refimpl.errors import InputError, keep_doubles, require_number, require_one_of, size_text
 from refimpl.grid import Grid
 from refimpl.model.friction import is_frictionless
 from refimpl.model.problem import Terms
@@ -19,6 +19,7 @@ from refimpl.solvers.paper import PAPER_TOLERANCE
 
 # Limits of mean pressure and tau over the reduced modulus, and of approaches over the side.
 LEAST_STRAIN, MOST_STRAIN = 1e-30, 1e6
+_SMALL_DOMAIN = 5e-6  # m: below the scans of a probe microscope, and a map in mm read as um
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,6 +90,8 @@ class Options:
             f"at most {most:.6g} N, the softer body's hardness, {hardness:.4g} Pa, times the nominal area "
             "(1 HV is 9.81e6 Pa; or plastic = false)"
         )
+        if max(scene.lengths) < _SMALL_DOMAIN:
+            allowed += f"; the domain is only {size_text(scene.lengths)} m: units of the map, or its pixel?"
         require_number("load", scene.load, allowed, at_most=most)
 
     def _check_strains(self) -> None:

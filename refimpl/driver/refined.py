@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.refinement import (
+    AIM,
     FIRST_GRIDS,
     GRID_SIZES,
+    DataShares,
     Unfinished,
-    exceeds,
     longer_side,
+    neglected_matter,
     predicted_size,
     reason_unreachable,
     refine_until,
     relative_bound,
+    unfalling,
 )
 from refimpl.driver.limits import Allowance
 from refimpl.driver.on_grid import Progress, initial_guess, solve_on_grid
@@ -26,7 +30,7 @@ from refimpl.planning.plan import Plan
 from refimpl.planning.term_effects import effects_in
 from refimpl.scene.discretise import Discretiser
 from refimpl.solution.cost import Cost, total_cost
-from refimpl.solution.data_error import finest_by_data
+from refimpl.solution.data_error import data_error, finest_by_data
 from refimpl.solution.evidence import Evidence
 from refimpl.solution.limits import Notice
 from refimpl.solution.solution import Solution, assemble
@@ -49,7 +53,8 @@ def refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Pr
             options.accuracy,
             quantity,
             slenderness=scene.slenderness,
-            finest_by_data=finest_by_data(scene),
+            data=grids.data,
+            restored=grids.restored,
         )
     except KeyboardInterrupt as interrupt:
         if grids.last is not None:
@@ -95,14 +100,17 @@ def forecast(options: Options, plan: Plan, discretiser: Discretiser) -> Forecast
     results = [grids.features_at(M * scene.slenderness) for M in FIRST_GRIDS]
     size, refusal = longer_side(results[-1]), ""
     if results[-1].touching and relative_bound(results, quantity) > accuracy:
-        finest = finest_by_data(scene) if exceeds("data", results[-1], accuracy, quantity) else math.inf
-        finer = [M * scene.slenderness for M in GRID_SIZES if size < M * scene.slenderness <= finest]
-        enough = predicted_size(results, accuracy, quantity, finer)
+        value = abs(results[-1].numbers[quantity])
+        stuck = unfalling(results, quantity, grids.data)
+        if neglected_matter(results[-1], quantity, accuracy * value - sum(stuck.values())):
+            results[-1] = grids.restored() or results[-1]
+        refusal = reason_unreachable(stuck, value, accuracy)
+        aim = accuracy if not refusal else AIM * sum(stuck.values()) / value
+        finer = [M * scene.slenderness for M in GRID_SIZES if size < M * scene.slenderness]
+        enough = predicted_size(results, aim, quantity, finer, grids.data)
         size = enough or max(finer, default=size)
         if enough is None:
-            refusal = (
-                reason_unreachable(results, accuracy, quantity) or f"{size} elements a side do not suffice"
-            )
+            refusal = refusal or f"{size} elements a side do not suffice"
     expected = grids.plan.on(scene.refined(size))
     seconds = grids.allowance.expected_seconds(expected.grid)
     return Forecast(expected.grid, seconds, expected.memory, tuple(r.grid for r in results), refusal)
@@ -119,6 +127,11 @@ class _Refinement:
         self.last: Evidence | None = None
         self._discretiser, self._progress = discretiser, progress
         self._tolerance, self.allowance = options.residual_tolerance, Allowance(options.limits)
+        self.data = DataShares(cache(self._data_left), finest_by_data(self.scene))
+
+    def _data_left(self, M: int) -> float:
+        """Share of the contact area that the data leave open on M elements along the longer side."""
+        return data_error(self.scene, self.scene.refined(M))
 
     def features_at(self, M: int) -> GridFeatures:
         """Solve on a grid, no coarser than the last; again if neglected terms exceed their budget.
@@ -154,6 +167,15 @@ class _Refinement:
             self.plan = self.plan.restore(solved.problem, largest)
             return self.features_at(M)
         return solved.features
+
+    def restored(self) -> GridFeatures | None:
+        """Return the last grid's features with all neglected terms, solved again; None where none is left."""
+        neglected = self.plan.neglected
+        if not neglected or self.last is None:
+            return None
+        for name in neglected:
+            self.plan = self.plan.restore(self.last.problem, name)
+        return self.features_at(longer_side(self.last.features))
 
     def solved(self) -> Evidence:
         """Return what was solved last."""

@@ -32,6 +32,7 @@ from refimpl.model.slopes import Slopes
 
 Complex = NDArray[np.complex128]
 Vector = tuple[Array, Array]
+Strains = tuple[Array, Array, Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +81,8 @@ class _Body:
         dx, dy = grid.spacings
         kx = 2 * np.pi * scipy.fft.fftfreq(self.shape[0], dx)[:, None]
         ky = 2 * np.pi * scipy.fft.rfftfreq(self.shape[1], dy)[None, :]
-        self.square = kx**2 + ky**2
+        square = kx**2 + ky**2
+        self.over_square = np.divide(1.0, square, out=np.zeros_like(square), where=square > 0)
         # first derivatives have no sign at the highest wavenumber of an even grid
         kx = np.where(np.abs(kx) < np.pi / dx * (1 - 1e-12), kx, 0.0)
         ky = np.where(np.abs(ky) < np.pi / dy * (1 - 1e-12), ky, 0.0)
@@ -91,63 +93,60 @@ class _Body:
 
     def recession(self, eta: Array, inward: Array) -> Array:
         """Return the first-order change of the displacement into the body at its surface (m)."""
-        f, along, slopes = self.contact.pressure, self.contact.traction, self.contact.slopes
-        cos, sin = np.cos(self.contact.direction), np.sin(self.contact.direction)
-        q = (self.sign * cos * along, self.sign * sin * along)
+        f, along, direction = self.contact.pressure, self.contact.traction, self.contact.direction
+        q = self.sign * np.cos(direction) * along, self.sign * np.sin(direction) * along
         eta = self.contact.grid.about_datum(eta, f)
-        u, strain, stress = self._surface_fields(f, q)
-        pressure = -self._divergence((eta * q[0], eta * q[1])) + self._divergence((f * u[0], f * u[1]))
+        u, (xx, yy, xy) = self._surface_fields(self._to(f), self._to(along))
+        xy_stress = eta * self.modulus / (1 + self.material.nu) * xy
+        pressure = self._divergence(f * u[0] - eta * q[0], f * u[1] - eta * q[1])
         shear = [
-            self._divergence((eta * stress[i][0], eta * stress[i][1]))
-            + self._divergence((q[i] * u[0], q[i] * u[1]))
-            for i in (0, 1)
+            self._divergence(eta * self._stress(xx, yy, f) + q[0] * u[0], xy_stress + q[0] * u[1]),
+            self._divergence(xy_stress + q[1] * u[0], eta * self._stress(yy, xx, f) + q[1] * u[1]),
         ]
         if not self.contact.facets_solved:
-            pressure -= along * slopes.tan_x
-            facet = (f * slopes.tan_x, f * slopes.tan_y)
-            shear[0] += self.sign * (cos * facet[0] - sin * facet[1])
-            shear[1] += self.sign * (sin * facet[0] + cos * facet[1])
-        nu, squeeze = self.material.nu, strain[0][0] + strain[1][1]
-        lifted = eta * (self.coupling * f + nu * squeeze) / (1 - nu)
+            facet_pressure, facet_shear = self._facets(f, along)
+            pressure += facet_pressure
+            shear = [own + facet for own, facet in zip(shear, facet_shear, strict=True)]
+        nu = self.material.nu
+        lifted = eta * (self.coupling * f + nu * (xx + yy)) / (1 - nu)
         rest = self.contact.grid.gradient(eta - inward)
-        change: Array = (
-            self._inward(pressure, (shear[0], shear[1])) + lifted + u[0] * rest[0] + u[1] * rest[1]
-        )
+        change: Array = self._inward(pressure, shear) + lifted + u[0] * rest[0] + u[1] * rest[1]
         return change
 
-    def _surface_fields(self, f: Array, q: Vector) -> tuple[Vector, list[list[Array]], list[list[Array]]]:
-        """In-plane displacement (m), strain, and stress (Pa) of a half-space's surface under f and q."""
-        E, nu, ik = self.modulus, self.material.nu, self.ik
-        over_square = self._inverse(self.square)
-        over_k = np.sqrt(over_square)
-        pressed, sheared = self._to(f), [self._to(part) for part in q]
-        divergence = ik[0] * sheared[0] + ik[1] * sheared[1]
-        u = [
-            self.coupling * over_square * ik[i] * pressed
-            + 2 * (1 + nu) / E * over_k * (sheared[i] + nu * over_square * ik[i] * divergence)
-            for i in (0, 1)
-        ]
-        strain = [[self._back(0.5 * (ik[i] * u[j] + ik[j] * u[i])) for j in (0, 1)] for i in (0, 1)]
-        trace = strain[0][0] + strain[1][1]
-        stress = [
-            [
-                E / (1 - nu**2) * ((1 - nu) * strain[i][j] + (i == j) * nu * trace)
-                - (i == j) * nu / (1 - nu) * f
-                for j in (0, 1)
-            ]
-            for i in (0, 1)
-        ]
-        return (self._back(u[0]), self._back(u[1])), strain, stress
+    def _facets(self, f: Array, along: Array) -> tuple[Array, Vector]:
+        """Pressure and shear of the facets' tractions that the solution does not have (Pa)."""
+        slopes, direction = self.contact.slopes, self.contact.direction
+        cos, sin = self.sign * np.cos(direction), self.sign * np.sin(direction)
+        ahead, across = f * slopes.tan_x, f * slopes.tan_y
+        return -along * slopes.tan_x, (cos * ahead - sin * across, sin * ahead + cos * across)
 
-    def _inward(self, pressure: Array, shear: Vector) -> Array:
+    def _surface_fields(self, pressed: Complex, sheared: Complex) -> tuple[Vector, Strains]:
+        """In-plane displacements (m) and strains xx, yy, xy of a half-space's surface under f and r."""
+        E, nu, ik, direction = self.modulus, self.material.nu, self.ik, self.contact.direction
+        towards = self.sign * np.cos(direction), self.sign * np.sin(direction)
+        over_k = np.sqrt(self.over_square)
+        divergence = (towards[0] * ik[0] + towards[1] * ik[1]) * sheared
+        along_k = self.over_square * (self.coupling * pressed + 2 * (1 + nu) / E * nu * over_k * divergence)
+        sheared = 2 * (1 + nu) / E * over_k * sheared
+        u = [ik[i] * along_k + towards[i] * sheared for i in (0, 1)]
+        strains = ik[0] * u[0], ik[1] * u[1], 0.5 * (ik[0] * u[1] + ik[1] * u[0])
+        xx, yy, xy = (self._back(strain) for strain in strains)
+        return (self._back(u[0]), self._back(u[1])), (xx, yy, xy)
+
+    def _stress(self, strain: Array, other: Array, f: Array) -> Array:
+        """In-plane normal stress (Pa) along the axis of ``strain``, at the surface under f."""
+        nu = self.material.nu
+        found: Array = self.modulus / (1 - nu**2) * (strain + nu * other) - nu / (1 - nu) * f
+        return found
+
+    def _inward(self, pressure: Array, shear: list[Array]) -> Array:
         """Displacement into a half-space (m) under a pressure and a shear; no mean."""
-        over_square = self._inverse(self.square)
-        normal = 2 * (1 - self.material.nu**2) / self.modulus * np.sqrt(over_square) * self._to(pressure)
+        normal = 2 * (1 - self.material.nu**2) / self.modulus * np.sqrt(self.over_square) * self._to(pressure)
         divergence = self.ik[0] * self._to(shear[0]) + self.ik[1] * self._to(shear[1])
-        return self._back(normal - self.coupling * over_square * divergence)
+        return self._back(normal - self.coupling * self.over_square * divergence)
 
-    def _divergence(self, flux: Vector) -> Array:
-        return self._back(self.ik[0] * self._to(flux[0]) + self.ik[1] * self._to(flux[1]))
+    def _divergence(self, along_x: Array, along_y: Array) -> Array:
+        return self._back(self.ik[0] * self._to(along_x) + self.ik[1] * self._to(along_y))
 
     def _to(self, values: Array) -> Complex:
         found: Complex = scipy.fft.rfft2(values, self.shape)
@@ -157,8 +156,3 @@ class _Body:
         nx, ny = self.contact.grid.shape
         found: Array = scipy.fft.irfft2(transform, self.shape)[:nx, :ny]
         return found
-
-    @staticmethod
-    def _inverse(square: Array) -> Array:
-        """``1 / k^2``, without the mean."""
-        return np.divide(1.0, square, out=np.zeros_like(square), where=square > 0)

@@ -27,6 +27,7 @@ _LEAST = 0.05  # share of p_max: 1 / p grows beyond bounds at the edges, where w
 SECOND_ORDER = {  # times tan^2 of the steepest slopes: what 24 finite-element contacts left above the rest
     "approach": 0.1,
     "normal_force": 0.2,
+    "friction_coefficient_corrected": 0.2,
     "friction_coefficient": 0.2,
     "contact_area": 0.5,
     "max_pressure": 0.2,

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
-from refimpl.half_space.model_form import model_form, steepness
+from refimpl.grid import Grid
+from refimpl.half_space.model_form import SECOND_ORDER, ModelForm, model_form, steepness
 from refimpl.model.certificate import State
 from refimpl.model.problem import Problem
 
 _REST = 0.25  # N times tan^2: with 0.2, which is stated, the largest left by 24 finite-element contacts
 ALLOWED = 0.05  # stated error of N at a given approach
 _FIRST = 0.7  # N's error over the slope's tangent for nu = 0: 0.53 to 0.68 measured at 15 to 2.5 degrees
-GENTLE = 1e-3  # tan^2 of the steepest slopes (1.8 degrees), where N is off by 2.2 % at most
+_MARGIN = 1.5  # of that, in the bound: 79 of 80 random contacts stay below it, the other states 0.6 %
+_AROUND = 32  # least margin of the window around the contact, elements
 
 
 def expected_error(problem: Problem) -> tuple[float, float]:
@@ -23,22 +26,27 @@ def expected_error(problem: Problem) -> tuple[float, float]:
     wave under a rigid flat loses.
     """
     tangent = math.sqrt(steepness(problem, np.ones(problem.grid.shape, dtype=bool)))
+    return math.atan(tangent), _first_order(problem, tangent)
+
+
+def _first_order(problem: Problem, tangent: float) -> float:
     shares = 1 - problem.pair.upper_share, problem.pair.upper_share
     bodies = problem.pair.lower, problem.pair.upper
     coupled = sum(s * (1 - 2 * b.nu) / (1 - b.nu) for s, b in zip(shares, bodies, strict=True) if s)
-    return math.atan(tangent), _FIRST * tangent * coupled
+    return _FIRST * tangent * coupled
 
 
 def half_space_excess(problem: Problem, state: State) -> tuple[float, str] | None:
     """Return the stated error of N and the warning's text where it exceeds `ALLOWED`; else None.
 
-    Surfaces below `GENTLE` are not computed: they stay below half of `ALLOWED`.
+    A bound by the slopes alone comes first; what exceeds it is computed in a window three times as wide as
+    the contact: 18 of 80 random contacts stated more than 4 %, with 0.97 to 1.00 of the whole grid's number.
     """
     steep = steepness(problem, state.contact)
-    if steep < GENTLE:
+    bound = _MARGIN * _first_order(problem, math.sqrt(steep)) + (_REST + SECOND_ORDER["normal_force"]) * steep
+    if bound <= ALLOWED:
         return None
-    moved = state.displacement_lower, state.displacement_upper
-    error = model_form(problem, state.pressure, state.traction, moved, state.approach)
+    error = _near_contact(problem, state)
     largest = error.normal_force + _REST * steep
     if largest <= ALLOWED:
         return None
@@ -49,3 +57,16 @@ def half_space_excess(problem: Problem, state: State) -> tuple[float, str] | Non
         f"{error.approach:.1%}; see rough-friction appendix-a surface"
     )
     return largest, text
+
+
+def _near_contact(problem: Problem, state: State) -> ModelForm:
+    """Return the model-form error by the surfaces in a window around the contact."""
+    grid = problem.grid
+    size = max(grid.window_around(state.contact, margin=0).shape)
+    near = grid.window_around(state.contact, margin=max(size, _AROUND))
+    seen = problem.windowed(near)
+    if near.shape != grid.shape:
+        lengths = near.shape[0] * grid.spacings[0], near.shape[1] * grid.spacings[1]
+        seen = replace(seen, grid=Grid(near.shape, lengths))
+    moved = state.displacement_lower[near.slices], state.displacement_upper[near.slices]
+    return model_form(seen, state.pressure[near.slices], state.traction[near.slices], moved, state.approach)

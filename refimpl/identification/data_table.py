@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import itertools
 import math
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -72,7 +73,8 @@ def read_rows(path: str | Path) -> tuple[Row, ...]:
 
     SI units; ``u`` is a standard uncertainty (68 %). Optional columns: ``sliding_direction`` (rad),
     ``sliding_offset`` (m), ``upper_file`` and ``lower_file`` (relative to the table). Semicolons or tabs may
-    separate the columns; decimal commas are read then. Lines that begin with "#" are comments. Raises
+    separate the columns; decimal commas are read then. Lines that begin with "#" are comments. An unnamed
+    first column that counts the rows, as R and pandas write it, is dropped with a warning. Raises
     `InputError`, which names the line, for anything else.
     """
     path = Path(path)
@@ -98,11 +100,22 @@ def read_rows(path: str | Path) -> tuple[Row, ...]:
         raise InputError("data", str(path), f"a CSV file ({alien})") from alien
     if not cells:
         raise InputError("data", str(path), "a header line and rows: the file is empty")
+    cells = _without_index(cells)
     header = cells[0][1]
     quantity = _check_header(header)
     decimal = "." if separator == "," else ","
     rows = tuple(_row(header, quantity, k, line, path.parent, decimal) for k, line in cells[1:])
     return check_rows(rows)
+
+
+def _without_index(cells: list[tuple[int, list[str]]]) -> list[tuple[int, list[str]]]:
+    """Lines without an unnamed first column of whole numbers from 0 or 1 on."""
+    header, counts = cells[0][1], [row[0] for _, row in cells[1:]]
+    if header[0] or counts not in ([str(k + first) for k in range(len(counts))] for first in (0, 1)):
+        return cells
+    said = "data: the unnamed first column, which counts the rows, was dropped"
+    warnings.warn(said, UserWarning, stacklevel=3)
+    return [(k, row[1:]) for k, row in cells]
 
 
 def _check_header(header: Sequence[str]) -> str:

@@ -212,12 +212,12 @@ class Spectrum:
         return float(line[0]), math.sqrt(max(float(covariance[0, 0]), 0.0))
 
 
-def fill_error(z: Array, pixel: Pixel) -> Array:
+def fill_error(filled: Array, missing: NDArray[np.bool_], pixel: Pixel) -> Array:
     """Error (m) of filling such holes: that of holes of the same pattern half a map away, moved back.
 
     There the filled map is the truth.
     """
-    filled, half = fill(z, pixel), tuple(n // 2 for n in z.shape)
-    holes = np.roll(np.isnan(z), half, (0, 1))
+    half = tuple(n // 2 for n in filled.shape)
+    holes = np.roll(missing, half, (0, 1))
     error = fill(np.where(holes, np.nan, filled), pixel) - filled
     return np.roll(error, tuple(-n for n in half), (0, 1))

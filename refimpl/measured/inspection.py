@@ -23,6 +23,7 @@ from refimpl.measured.areal_parameters import (
 from refimpl.measured.measured_surface import MeasuredSurface
 from refimpl.measured.missing_points import fill
 from refimpl.measured.roughness_fit import RoughnessFit, fit_roughness
+from refimpl.measured.standing_out import standing_out
 from refimpl.surfaces.surface import pixel_edges
 
 SAL_LEVEL = 0.2  # ISO 25178-2
@@ -71,7 +72,11 @@ class Inspection:
     @cached_property
     def spectrum(self) -> Spectrum:
         """Spectrum of the levelled map, averaged over circles; missing points are filled."""
-        return Spectrum.of(fill(self.z, self.pixel), self.pixel)
+        return Spectrum.of(self._filled, self.pixel)
+
+    @cached_property
+    def _filled(self) -> Array:
+        return fill(self.z, self.pixel)
 
     @cached_property
     def parameters(self) -> dict[str, float]:
@@ -88,27 +93,30 @@ class Inspection:
             found[f"{name}_along"] = float(away.max())  # NaN where one direction does not fall so far
         long, short, lay = self.autocorrelation.lay()
         found["lay_deg"] = round(math.degrees(lay), 1) % 180.0 if long > short else math.nan
-        slope = self._psd_slope(found["le_across"])[0]
+        slope = self._psd_slope[0]
         found |= {"psd_slope": slope, "hurst": -(slope + 2.0) / 2.0, "nayak": nayak(self.z, self.pixel)}
         return found
 
     @cached_property
     def deviations(self) -> dict[str, float]:
         """Standard deviations of the parameters of the spectrum's slope, by its scatter about the line."""
-        slope = self._psd_slope(self.parameters["le_across"])[1]
+        slope = self._psd_slope[1]
         return {"psd_slope": slope, "hurst": slope / 2.0}
 
-    def _psd_slope(self, length: float) -> tuple[float, float]:
-        """Slope of the spectrum below ``length`` (m), its deviation; NaN where holes decide it.
+    @cached_property
+    def _psd_slope(self) -> tuple[float, float]:
+        """Slope of the spectrum below the shortest 1/e length, its deviation; NaN where holes decide it.
 
         Holes decide where the slope without the spectrum of `fill_error` differs by more than its deviation.
         """
-        if not math.isfinite(length):
+        away = self.autocorrelation.distances(math.exp(-1.0))
+        if not np.isfinite(away).any():
             return math.nan, math.nan
+        length = float(np.nanmin(away))
         range_ = 2 * math.pi * length, 4.0 * max(self.pixel)
         slope, deviation = self.spectrum.slope(*range_)
         if np.isnan(self.z).any():
-            error = Spectrum.of(fill_error(self.z, self.pixel), self.pixel).C
+            error = Spectrum.of(fill_error(self._filled, np.isnan(self.z), self.pixel), self.pixel).C
             rest = replace(self.spectrum, C=np.maximum(self.spectrum.C - error, np.finfo(float).tiny))
             again = rest.slope(*range_)[0]
             if not abs(again - slope) <= deviation:
@@ -139,7 +147,11 @@ class Inspection:
             "window": {"points": list(self.z.shape), "missing": int(np.isnan(self.z).sum())},
             "parameters": self.parameters,
             "deviations": self.deviations,
-            "notes": [*self.surface.prepared.notes, *implausible_slope(self.z, self.pixel)],
+            "notes": [
+                *self.surface.prepared.notes,
+                *standing_out(self.z, self.pixel),
+                *implausible_slope(self.z, self.pixel),
+            ],
         }
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import contextlib
 import io
 import logging
-import math
 import struct
 import tokenize
 import warnings
 import zipfile
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeVar
@@ -20,8 +20,19 @@ import numpy as np
 import scipy
 
 from refimpl.errors import InputError
-from refimpl.grid import Array
-from refimpl.measured.reading import ARRAY, IMAGE, MAX_POINTS, UNITS, Overrides, RawHeights, checked
+from refimpl.measured.channels import (
+    ARRAYS,
+    choose,
+    chosen,
+    is_container,
+    taken,
+    topography,
+    with_coordinates,
+)
+from refimpl.measured.file_kinds import kind_of
+from refimpl.measured.point_tables import points_map
+from refimpl.measured.reading import ALONG_Y, ARRAY, IMAGE, UNITS, Overrides, RawHeights, checked
+from refimpl.measured.text_lines import WYKO
 from refimpl.measured.workarounds import NMS_UNIT, Source, rewritten
 
 T = TypeVar("T")
@@ -46,6 +57,8 @@ CORRUPT: tuple[type[Exception], ...] = (
 def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
     """Heights of a binary instrument file; ``head``: its first bytes. Raises InputError."""
     library = library_for(path)
+    if is_container(path):
+        return _of_container(library, path, given)
     formats = _formats(library, path, head)
     failures = []
     for name in formats:
@@ -55,6 +68,8 @@ def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
             raise
         except corrupt(library) as error:
             failures.append(f"{name}: {first_line(error)}")
+    if kind := kind_of(path, head):
+        raise InputError("path", str(path), kind)
     likely = failures[0] if failures else f"none of SurfaceTopography {library.__version__}'s formats fits"
     raise InputError("path", str(path), f"a file that can be read ({likely})")
 
@@ -91,78 +106,82 @@ def read_as(
     library: ModuleType, path: Path, name: str, given: Overrides, source: Source, notes: tuple[str, ...] = ()
 ) -> RawHeights:
     """Heights of one file, read as the format ``name`` from ``source``."""
-    quiet = contextlib.redirect_stdout(io.StringIO())  # SciPy prints what it cannot reshape
+    with _quietly() as said, library.open_topography(source, format=name) as reader:
+        index, channel = choose(path, name, reader, given)
+        notes += taken(reader, channel)
+        if name in ARRAYS and (points := with_coordinates(reader, channel)) is not None:
+            return points_map(path, points, given, notes=notes)
+        found = topography(reader, index)
+        wyko = name == "asc" and channel.info["raw_metadata"].get("format_flavor") == "wyko"
+        form = WYKO if wyko else name
+        reading = _record(path, form, found, channel.physical_sizes is not None, given, said)
+    names = tuple(str(c.name) for c in reader.channels)
+    return replace(reading, channel=str(channel.name), channels=names, notes=(*notes, *reading.notes))
+
+
+@contextlib.contextmanager
+def _quietly() -> Iterator[list[warnings.WarningMessage]]:
+    """Collect the library's warnings; SciPy prints what it cannot reshape."""
+    quiet = contextlib.redirect_stdout(io.StringIO())
     with quiet, warnings.catch_warnings(record=True) as said, np.errstate(all="ignore"):
         warnings.simplefilter("always")
-        with library.open_topography(source, format=name) as reader:
-            index, channel = _choose(path, reader, given)
-            heights, unit, pixel = _loaded(path, reader, index, channel)
-    if pixel and name == "nms":
-        pixel = NMS_UNIT * pixel[0], NMS_UNIT * pixel[1]
-    notes += ("NMS: its spacing is in nm",) if name == "nms" else ()
-    stated = unit if unit is None else library.Support.UnitConversion.get_unit_conversion_factor(unit, "m")
-    unit, pixel, overridden = given.resolve(path.name, unit, pixel)
-    if given.unit is not None or stated is None:
-        stated = UNITS[unit]
+        yield said
+
+
+def _record(
+    path: Path, form: str, found: Any, sized: bool, given: Overrides, said: list[warnings.WarningMessage]
+) -> RawHeights:
+    """The library's map as it lies here: its heights (m; missing: NaN), pixel, unit, and the library's words.
+
+    ``sized``: the file states its size.
+    """
+    heights = checked(path, np.ma.filled(np.ma.asarray(found.heights(), dtype=np.float64), np.nan))
+    metre, pixel = None, None
+    if found.unit is not None:
+        metre = found.to_unit("m").physical_sizes[0] / found.physical_sizes[0]
+        if sized:
+            dx, dy = (
+                length * metre / n for length, n in zip(found.physical_sizes, heights.shape, strict=True)
+            )
+            pixel = (NMS_UNIT * dx, NMS_UNIT * dy) if form == "nms" else (dx, dy)
+    if form == WYKO:  # one x per line, from the bottom: the library takes lines for rows from the top
+        heights, pixel = heights.T, None if pixel is None else pixel[::-1]
+    unit, pixel, overridden = given.resolve(path.name, found.unit, pixel)
+    heights = heights * (UNITS[unit] if given.unit is not None or metre is None else metre)
+    upwards = form == WYKO or form in UPWARDS
     remarks = [
         f"SurfaceTopography: {first_line(w.message)}" for w in said if issubclass(w.category, UserWarning)
     ]
-    upwards = name in UPWARDS
-    heights = heights * stated
     return RawHeights(
         np.ascontiguousarray(heights if upwards else heights[:, ::-1]),
-        pixel, path.name, f"by SurfaceTopography's {name} reader", unit, ARRAY if upwards else IMAGE,
-        str(channel.name), tuple(str(c.name) for c in reader.channels),
-        (*notes, *overridden, *remarks),
+        pixel, path.name, f"by SurfaceTopography's {form} reader", unit,
+        ALONG_Y if form == WYKO else ARRAY if upwards else IMAGE,
+        notes=(*(("NMS: its spacing is in nm",) if form == "nms" else ()), *overridden, *remarks),
     )  # fmt: skip
 
 
-def _choose(path: Path, reader: Any, given: Overrides) -> tuple[int, Any]:
-    """The channel of the given name or number, by default the first map of heights from the library's own."""
-    channels = list(reader.channels)
-    names = [str(c.name) for c in channels]
-    listed = ", ".join(f"{k} {name!r}" for k, name in enumerate(names))
-    if given.channel is None:
-        default = reader._default_channel_index
-        order = [default, *range(len(channels))] if default < len(channels) else range(len(channels))
-        index = next((k for k in order if _is_height(channels[k])), None)
-        if index is None:
-            raise InputError("path", str(path), f"a map of heights (found: {listed or 'no channel'})")
-    elif isinstance(given.channel, int):
-        index = given.channel
-    else:
-        index = next((k for k, name in enumerate(names) if name.casefold() == given.channel.casefold()), -1)
-    if not 0 <= index < len(channels):
-        raise InputError("channel", given.channel, f"a channel of {path.name}: {listed}")
-    channel = channels[index]
-    if channel.dim != 2 or not channel.is_uniform:
-        what = "a line scan" if channel.dim == 1 else "no regular map"
-        raise InputError("path", str(path), f"a map of heights (channel {names[index]!r} is {what})")
-    if not _is_height(channel):
-        raise InputError("channel", given.channel, f"a channel of heights in {path.name}: {listed}")
-    if math.prod(channel.nb_grid_pts) > MAX_POINTS:
-        raise InputError("path", str(path), f"heights on a grid of at most {MAX_POINTS} points")
-    return index, channel
+def _of_container(library: ModuleType, path: Path, given: Overrides) -> RawHeights:
+    """A measurement of a container of contact.engineering, scaled and detrended as its metadata say."""
+    from SurfaceTopography.Container.IO import CEReader
 
-
-def _is_height(channel: Any) -> bool:
-    return channel.dim == 2 and str(getattr(channel.data_kind, "name", "HEIGHT")) == "HEIGHT"
-
-
-def _loaded(
-    path: Path, reader: Any, index: int, channel: Any
-) -> tuple[Array, str | None, tuple[float, float] | None]:
-    """Heights in the file's unit (missing: NaN), that unit, and the pixel's edges (m)."""
-    sizes = channel.physical_sizes
-    given = {} if sizes is not None else {"physical_sizes": tuple(map(float, channel.nb_grid_pts))}
-    topography = reader.topography(channel_index=index, **given)
-    heights = checked(path, np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan))
-    unit, pixel = topography.unit, None
-    if sizes is not None and unit is not None:
-        edges = zip(topography.to_unit("m").physical_sizes, topography.nb_grid_pts, strict=True)
-        dx, dy = (float(length / n) for length, n in edges)
-        pixel = dx, dy
-    return heights, unit, pixel
+    try:
+        with _quietly() as said:
+            reader = CEReader(str(path))
+            containers = range(reader.nb_containers)
+            members = [(k, j, m) for k in containers for j, m in enumerate(reader.members(k))]
+            k, j, member = members[chosen(path, [m.name for *_, m in members], given.channel)]
+            form = library.IO.detect_format(member.open)
+            found = reader.container(k)[j]
+            if found.dim != 2 or not found.is_uniform:
+                raise InputError("path", str(path), f"a map of heights ({member.name!r} is a line scan)")
+            reading = _record(path, form, found, True, given, said)
+    except corrupt(library) as error:
+        raise InputError("path", str(path), f"a file that can be read ({first_line(error)})") from error
+    names = tuple(m.name for *_, m in members)
+    prepared = found.info.get("detrend_mode") or "none"
+    note = f"{form} file {member.name!r} of a container of contact.engineering, its detrending {prepared!r}"
+    source = "by SurfaceTopography from a container"
+    return replace(reading, channel=member.name, channels=names, source=source, notes=(note, *reading.notes))
 
 
 def read_or_refuse(path: Path, load: Callable[[Path], T], kinds: tuple[type[Exception], ...] = CORRUPT) -> T:

@@ -18,6 +18,7 @@ from refimpl.measured.missing_points import fill
 from refimpl.measured.orientation import Oriented, check_orientation, checked_centre, oriented
 from refimpl.measured.preparation import check_preparation, prepare
 from refimpl.measured.readers import UNITS, RawHeights, read
+from refimpl.measured.standing_out import standing_out
 from refimpl.measured.untrusted import read_untrusted, refuse_huge
 from refimpl.surfaces.bicubic import MEMORY, resample, resample_periodic
 from refimpl.surfaces.from_table import KINDS
@@ -203,21 +204,14 @@ class MeasuredSurface(Surface):
             f"{name}: the window of {size_text(grid.lengths)} m about {self._about} is used, "
             f"{size_text(part.stop - part.start for part in window.points)} points, resampled bicubically to "
             f"{grid} elements",
-            *(f"{name}: {note}" for note in self._origin),
+            f"{name}: {reading.orientation}",
             *self.notes(grid),
         )
 
     @property
     def file_notes(self) -> tuple[str, ...]:
         """Channel, orientation and what was changed in reading and preparing the file."""
-        return (*self._origin, *self.prepared.notes)
-
-    @property
-    def _origin(self) -> tuple[str, ...]:
-        reading = self.reading
-        others = [name for name in reading.channels if name != reading.channel]
-        several = (f"channel {reading.channel!r} was read; there are also {', '.join(map(repr, others))}",)
-        return (reading.orientation, *(several if others else ()))
+        return (self.reading.orientation, *self.prepared.notes)
 
     @property
     def _about(self) -> str:
@@ -225,6 +219,9 @@ class MeasuredSurface(Surface):
 
     def pitch(self, lengths: tuple[float, float]) -> float:
         return min(self.reading.pixel)
+
+    def data_points(self, grid: Grid) -> tuple[Array, tuple[float, float]]:
+        return self._central(grid.lengths)[2], self._oriented.reading.pixel
 
     def notes(self, grid: Grid) -> tuple[str, ...]:
         """Notes on reading and preparation, the form subtracted, filled points and doubtful sizes."""
@@ -239,7 +236,7 @@ class MeasuredSurface(Surface):
                 f"{name}: level {self.level!r} fitted in the window (slopes {tilt}{bent}) and subtracted; "
                 f"rms height there {np.nanstd(z):.4g} m before, {np.nanstd(rest):.4g} m after"
             )
-        said += [f"{name}: {note}" for note in implausible_slope(rest, pixel)]
+        said += [f"{name}: {note}" for note in (*standing_out(rest, pixel), *implausible_slope(rest, pixel))]
         if window.lost:
             said.append(
                 f"{name}: {window.lost} of {window.size} points in the window are missing, filled in here"

@@ -1,15 +1,19 @@
-"""Tables of points x, y, z: their grid and its pitch."""
+"""Tables of points x, y, z: their grid, its pitch, and the map."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, size_text
 from refimpl.grid import Array
+from refimpl.measured.reading import MAX_POINTS, UNITS, Overrides, RawHeights, checked
 
 POINT = 3  # columns
+_SAME_PITCH = 0.01  # relative difference of two pitches: digits of a given one
+_UNIT = re.compile(rf"(?<!\w)({'|'.join(UNITS)})(?!\w)")
 
 
 def is_triples(rows: Array) -> bool:
@@ -58,3 +62,40 @@ def _positions(path: Path, name: str, along: Array) -> tuple[Array, float]:
             "path", str(path), f"points on a regular grid ({off:.2g} of the pitch in {name} off it)"
         )
     return np.rint(place).astype(np.intp), pitch
+
+
+def _check_pitch(path: Path, pitch: tuple[float, float], stated: float, given: Overrides) -> None:
+    """Raise InputError unless a given pixel is the points' pitch (m), or would be it in another unit (m).
+
+    Some instruments write x and y in mm and z in um.
+    """
+    if given.pixel_size is None:
+        return
+    ratios = np.divide(given.pixel_size, pitch)
+    if not any(np.allclose(ratios, unit / stated, _SAME_PITCH, 0) for unit in UNITS.values()):
+        own = f"{size_text(pitch)} m (in one of the units)"
+        allowed = f"none, or the pitch of the points in {path.name}, {own}"
+        raise InputError("pixel_size", given.pixel_size, allowed)
+
+
+def points_map(
+    path: Path, points: Array, given: Overrides, header: tuple[str, ...] = (), notes: tuple[str, ...] = ()
+) -> RawHeights:
+    """The map of points x, y, z in the given unit, or in the three that a line of the header names."""
+    found: list[list[str]] = [_UNIT.findall(line) for line in header]
+    named = next((units for units in found if len(units) == POINT), None)
+    own = given.unit or (named[-1] if named else None)
+    if own is None:
+        allowed = f"one: {path.name} holds points x, y, z and states no unit"
+        raise InputError("unit", None, allowed)
+    heights, edges = on_grid(path, points)
+    x, y = (UNITS[name] for name in (named or [own, own])[:2])
+    pitch = edges[0] * x, edges[1] * y
+    _check_pitch(path, pitch, x, given)
+    unit, pixel, overridden = given.resolve(path.name, named[-1] if named else own, pitch)
+    if heights.size > MAX_POINTS:
+        raise InputError("path", str(path), f"heights on a grid of at most {MAX_POINTS} points")
+    said = () if named is None else (f"units {', '.join(named)} of x, y, z as the header states them",)
+    heights, notes = checked(path, heights * UNITS[unit]), (*notes, *said, *overridden)
+    source, orientation = "as points x, y, z", "coordinates as the file states them"
+    return RawHeights(heights, pixel, path.name, source, unit, orientation, notes=notes)

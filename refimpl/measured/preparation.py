@@ -61,7 +61,7 @@ def prepare(
 
 def _without_outliers(reading: RawHeights, times: float, repeats: bool) -> RawHeights:
     missing = np.isnan(reading.heights)
-    away = _off_neighbours(_filled(reading), repeats)
+    away = off_neighbours(_filled(reading), repeats)
     typical = MAD_TO_RMS * float(np.median(away[~missing]))
     around = scipy.ndimage.percentile_filter(
         away, PERCENTILE, NEIGHBOURHOOD, mode="wrap" if repeats else "nearest"
@@ -75,7 +75,7 @@ def _without_outliers(reading: RawHeights, times: float, repeats: bool) -> RawHe
     return replace(reading, heights=np.where(out, np.nan, reading.heights), notes=(*reading.notes, note))
 
 
-def _off_neighbours(z: Array, repeats: bool) -> Array:
+def off_neighbours(z: Array, repeats: bool) -> Array:
     """Distance of each point from its neighbours: the median, over the four lines through it, of that from
     the mean of the two neighbours on the line. Lines that leave the map count as straight."""
     padded = np.pad(z, 1, mode="wrap") if repeats else np.pad(z, 1, mode="reflect", reflect_type="odd")

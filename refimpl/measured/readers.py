@@ -16,6 +16,7 @@ import numpy as np
 
 from refimpl.errors import InputError, size_text
 from refimpl.grid import Array
+from refimpl.measured.file_kinds import kind_of
 from refimpl.measured.instrument_files import (
     CORRUPT,
     claimed_by_magic,
@@ -26,14 +27,24 @@ from refimpl.measured.instrument_files import (
     read_instrument,
     read_or_refuse,
 )
-from refimpl.measured.point_tables import is_triples, on_grid
-from refimpl.measured.reading import IMAGE, MAX_BYTES, MAX_POINTS, UNITS, Overrides, RawHeights, checked
+from refimpl.measured.point_tables import is_triples, points_map
+from refimpl.measured.reading import (
+    IMAGE,
+    MAX_BYTES,
+    MAX_POINTS,
+    UNITS,
+    Overrides,
+    RawHeights,
+    checked,
+    far_points,
+)
+from refimpl.measured.text_lines import WYKO
 from refimpl.measured.text_tables import TextTable, read_table
+from refimpl.measured.workarounds import wyko_header
 
 __all__ = ["MAX_BYTES", "MAX_POINTS", "UNITS", "Overrides", "RawHeights", "read"]
 
 _HEAD = 2**16  # bytes that tell text from binary
-_SAME_PITCH = 0.01  # relative difference of two pitches: digits of a given one
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 
 
@@ -52,6 +63,13 @@ def read(
     for x and y in another unit. All else is read by SurfaceTopography.
     Raises InputError.
     """
+    found = _read(path, unit, pixel_size, channel)
+    return replace(found, notes=(*found.notes, *far_points(found)))
+
+
+def _read(
+    path: Path, unit: str | None, pixel_size: tuple[float, float] | None, channel: str | int | None
+) -> RawHeights:
     _check_size(path)
     given = Overrides(unit, pixel_size, channel)
     head = read_or_refuse(path, _head)
@@ -59,7 +77,7 @@ def read(
         return _plain(path, checked(path, read_or_refuse(path, _npy)), given, "as a plain array")
     is_text = head.startswith(_UTF16) or b"\0" not in head
     if is_text and not claimed_by_magic(path, head):
-        return read_or_refuse(path, lambda file: _text(file, given))
+        return read_or_refuse(path, lambda file: _text(file, given, head))
     return read_instrument(path, given, head)
 
 
@@ -98,7 +116,9 @@ def _plain(
     return RawHeights(raw * UNITS[unit], pixel, path.name, source, unit, notes=notes)
 
 
-def _text(path: Path, given: Overrides) -> RawHeights:
+def _text(path: Path, given: Overrides, head: bytes) -> RawHeights:
+    if kind := kind_of(path, head):
+        raise InputError("path", str(path), kind)
     table = read_table(path)
     rows, columns = table.rows.shape
     if path.suffix.lower() == ".xyz" and columns not in (2, 3):
@@ -108,13 +128,13 @@ def _text(path: Path, given: Overrides) -> RawHeights:
             "path", str(path), f"a map (a line scan: {rows} rows of {columns} columns were found)"
         )
     if is_triples(table.rows):
-        return _points(path, table, given)
+        return points_map(path, table.rows, given, table.header, table.notes)
     if not table.header:
         return _plain(path, checked(path, table.rows), given, "as a plain table of text", table)
     try:
         return _with_header(path, table, given)
     except InputError as refused:
-        if refused.field == "channel":
+        if refused.field == "channel" or table.header[0].startswith(WYKO):
             raise
     if len(table.blocks) > 1:
         raise InputError(
@@ -128,6 +148,8 @@ def _text(path: Path, given: Overrides) -> RawHeights:
 def _with_header(path: Path, table: TextTable, given: Overrides) -> RawHeights:
     """Text whose header says what the library knows: Gwyddion's, SPIP's, Wyko's and others."""
     library = library_for(path)
+    if table.header[0].startswith(WYKO):
+        table = replace(table, header=wyko_header(path, table.header))
     text = table.normalised()
 
     def load(file: Path) -> RawHeights:
@@ -140,32 +162,3 @@ def _with_header(path: Path, table: TextTable, given: Overrides) -> RawHeights:
         )
         raise InputError("path", str(path), allowed)
     return found
-
-
-def _check_pitch(path: Path, pitch: tuple[float, float], given: Overrides) -> None:
-    """Raise InputError unless a given pixel is the points' pitch (m), or would be it in another unit.
-
-    Some instruments write x and y in mm and z in um.
-    """
-    if given.pixel_size is None or given.unit is None:
-        return
-    ratios = np.divide(given.pixel_size, pitch) * UNITS[given.unit]
-    if not any(np.allclose(ratios, unit, _SAME_PITCH, 0) for unit in UNITS.values()):
-        own = f"{size_text(pitch)} m (in one of the units)"
-        allowed = f"none, or the pitch of the points in {path.name}, {own}"
-        raise InputError("pixel_size", given.pixel_size, allowed)
-
-
-def _points(path: Path, table: TextTable, given: Overrides) -> RawHeights:
-    if given.unit is None:
-        allowed = f"one: {path.name} holds points x, y, z and states no unit"
-        raise InputError("unit", None, allowed)
-    heights, edges = on_grid(path, table.rows)
-    pitch = edges[0] * UNITS[given.unit], edges[1] * UNITS[given.unit]
-    _check_pitch(path, pitch, given)
-    unit, pixel, notes = given.resolve(path.name, given.unit, pitch)
-    if heights.size > MAX_POINTS:
-        raise InputError("path", str(path), f"heights on a grid of at most {MAX_POINTS} points")
-    heights, notes = checked(path, heights * UNITS[given.unit]), (*table.notes, *notes)
-    source, orientation = "as points x, y, z", "coordinates as the file states them"
-    return RawHeights(heights, pixel, path.name, source, unit, orientation, notes=notes)

@@ -25,8 +25,12 @@ UNITS = {
 }
 ASCII = {"µm": "um", "μm": "um", "Å": "A"}
 
+_NO_DATA = (-999.0, -9999.0, -99999.0, 999.0, 9999.0, 99999.0, -32768.0, 32767.0)  # in the file's unit
+_FAR = 10.0  # ranges of all other heights at which one value is no height of them; 0.5 for those numbers
+
 ARRAY = "first index along x, second along y (upwards)"
 IMAGE = "lines along x, the first line at the top"
+ALONG_Y = "lines along y, upwards, the first at the left"
 
 
 @dataclass(frozen=True)
@@ -105,3 +109,19 @@ def checked(path: Path, raw: Array) -> Array:
     heights = np.array(raw, dtype=np.float64)
     heights[~np.isfinite(heights)] = np.nan
     return heights
+
+
+def far_points(found: RawHeights) -> tuple[str, ...]:
+    """A note on points of one value far outside all others, which may stand for missing points."""
+    z, notes = found.heights[np.isfinite(found.heights)], []
+    for value in {float(z.min()), float(z.max())} if z.size else ():
+        others = z[z != value]
+        if not others.size:
+            continue
+        low, high, size = float(others.min()), float(others.max()), UNITS[found.unit]
+        usual = any(np.isclose(value, mark * size, 1e-6, 0) for mark in _NO_DATA)
+        if max(value - high, low - value) > (0.5 if usual else _FAR) * (high - low):
+            span = f"far outside all others, {low / size:.4g} to {high / size:.4g}"
+            shown = f"{z.size - others.size} points are at {value / size:.6g} {found.unit}, {span}"
+            notes.append(f"{shown}: if they are missing points, write nan there")
+    return tuple(notes)

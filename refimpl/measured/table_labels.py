@@ -36,22 +36,59 @@ def is_title(sample: list[list[str]]) -> bool:
     return _counts(names) and _are_heights(sample[1:])
 
 
-def without_labels(path: Path, rows: Array, sample: list[list[str]]) -> tuple[Array, list[str]]:
-    """Rows without an index column. Raises InputError for coordinates beside the heights."""
+def word_in_corner(sample: list[list[str]], unknown: list[str]) -> str:
+    """The first entry of the first row where it is the only one that is no number; else nothing."""
+    first = sample[0]
+    return first[0] if len(first) > POINT and unknown == first[:1] and not is_title(sample) else ""
+
+
+def without_labels(
+    path: Path, rows: Array, sample: list[list[str]], corner: str = ""
+) -> tuple[Array, list[str]]:
+    """Heights without an index row or column; points x, y, z of heights in a frame of even coordinates.
+
+    Raises InputError for other coordinates beside the heights, and for a ``corner`` without them.
+    """
     column, titled = rows[:, 0], is_title(sample)
     notes = ["a leading index row was dropped"] if titled else []
     body = sample[1:] if titled else sample
     counts = column[0] in (0, 1) and bool(np.all(np.diff(column) == 1)) and min(rows.shape) > 1
     if counts and all(_WHOLE.fullmatch(row[0]) for row in body) and _are_heights(body):
         return rows[:, 1:], [*notes, "a leading index column was dropped"]
-    cornered = titled and not _NUMBER.fullmatch(sample[0][0])
-    if cornered or (np.isnan(rows[0, 0]) and _is_even(rows[0, 1:]) and _is_even(rows[1:, 0])):
+    if rows.shape[1] <= POINT:
+        return rows, notes
+    x, y = rows[0, 1:], rows[1:, 0]
+    even = [_is_even(x) and not _goes_on(x, rows[1, 1:]), _is_even(y) and not _goes_on(y, rows[1:, 1])]
+    if all(even) and not titled:
+        said = f"the first row and column, corner {sample[0][0]!r}, are x and y, in the unit of the heights"
+        points = [np.tile(x, len(y)), np.repeat(y, len(x)), rows[1:, 1:].ravel()]
+        return np.stack(points, axis=1), [f"{said} unless a pixel is given"]
+    cornered = bool(corner) or (titled and not _NUMBER.fullmatch(sample[0][0]))
+    axis = _is_axis(rows[0], rows[1]) or _is_axis(column, rows[:, 1])
+    if cornered or axis or (np.isnan(rows[0, 0]) and any(even)):
         found = f"the first row begins with {sample[0][:4]}, the first column with {rows[:4, 0].tolist()}"
         raise InputError("path", str(path), f"heights without their coordinates ({found})")
     return rows, notes
 
 
-def _is_even(values: Array) -> bool:
-    """Return whether values rise or fall by one step, as coordinates do."""
-    steps = np.diff(values)
-    return len(steps) > 1 and steps[0] != 0 and bool(np.allclose(steps, steps[0], rtol=1e-3, atol=0))
+def _is_even(values: Array, share: float = 0.1) -> bool:
+    """Return whether values rise or fall by one step, to a ``share`` of it; missing ones are left out."""
+    at = np.flatnonzero(np.isfinite(values))
+    if len(at) < POINT:
+        return False
+    step = (values[at[-1]] - values[at[0]]) / (at[-1] - at[0])
+    off = values[at] - values[at[0]] - step * (at - at[0])
+    return bool(step != 0 and np.abs(off).max() <= share * abs(step))
+
+
+def _goes_on(first: Array, second: Array) -> bool:
+    """Return whether the next line rises as the first: both are heights of a slope, or one is missing."""
+    if not np.isfinite(first).all() or not np.isfinite(np.diff(second)).any():
+        return True
+    rise, other = (float(np.nanmedian(np.diff(line))) for line in (first, second))
+    return bool(np.isclose(rise, other, 1e-6, 0)) or (_is_even(second) and 0.5 <= other / rise <= 2)
+
+
+def _is_axis(first: Array, second: Array) -> bool:
+    """Return whether a whole line is even as none of heights: four values or more, to rounding."""
+    return len(first) > POINT and _is_even(first, 1e-6) and not _goes_on(first, second)

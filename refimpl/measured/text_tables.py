@@ -12,22 +12,23 @@ import re
 from array import array
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import islice, pairwise
+from itertools import chain, islice, pairwise
 from pathlib import Path
 
 import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
-from refimpl.measured.table_labels import is_title, without_labels
+from refimpl.measured.table_labels import is_title, without_labels, word_in_corner
+from refimpl.measured.text_lines import NOT_MEASURED, encoding_of, lines_of
 
 MAX_HEADER = 400  # lines before the numbers
 _SAMPLE = 50  # lines by whose entries labels of rows and columns are known
-_PIECE = 2**20  # characters read at a time
-NOT_MEASURED = (
-    "nan", "bad", "na", "n/a", "inf", "-inf", "null", "none", "---", "--", "***", "**", "*", "-",
-)  # fmt: skip
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?")
+_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}[.,]\d{3}")
+_NO_DATA = re.compile(rf"(nodata_value)\s+({_NUMBER.pattern})", re.IGNORECASE)
+_WHOLE = re.compile(r"[-+]?\d{1,3}")
+_TIGHT = re.compile(r"\d,\d")
 _COMMA_NUMBER = re.compile(r"[-+]?(\d+,\d*|,\d+)([eEdD][-+]?\d+)?")
 
 
@@ -60,46 +61,30 @@ class TextTable:
         return tuple(b - a for a, b in pairwise(sorted({0, *again, len(self.rows)})))
 
 
-def encoding_of(path: Path) -> str:
-    """UTF-8 or UTF-16 by the file's mark, UTF-8 if it is valid, else Latin-1."""
-    with path.open("rb") as file:
-        if file.read(2) in (b"\xff\xfe", b"\xfe\xff"):
-            return "utf-16"
-    try:
-        with path.open(encoding="utf-8-sig") as text:
-            while text.read(_PIECE):
-                pass
-    except UnicodeDecodeError:
-        return "latin-1"
-    return "utf-8-sig"
-
-
-def _lines(path: Path, encoding: str) -> Iterator[tuple[int, str]]:
-    """Number and text of each line, one at a time: a list takes several times what their numbers do."""
-    with path.open(encoding=encoding) as file:
-        for number, line in enumerate(file, 1):
-            yield from ((number, part.strip(" \xa0")) for part in line.splitlines())
-
-
 def read_table(path: Path) -> TextTable:
     """Read the table of numbers in a text file. Raises InputError that says what was found."""
     encoding = encoding_of(path)
-    head = list(islice(_lines(path, encoding), MAX_HEADER + _SAMPLE))
+    head = list(islice(lines_of(path, encoding), MAX_HEADER + _SAMPLE))
     lines = [line for _, line in head]
     layout, start, width = _layout(path, lines)
-    sample = [layout.cells(line) for line in lines[start : start + _SAMPLE] if line and line[0] != "#"]
-    titled = is_title(sample)
+    shown = [line for line in lines[start : start + _SAMPLE] if line and line[0] != "#"]
+    sample = [layout.cells(line) for line in shown]
+    layout.refuse_ambiguous(path, shown, sample)
+    titled, corner = is_title(sample), word_in_corner(sample, layout.unknown(sample[0]))
     comments: list[tuple[int, str]] = []
 
     def data() -> Iterator[tuple[int, str]]:
         comments.clear()
         count = 0
-        for number, line in islice(_lines(path, encoding), start + titled, None):
+        for number, line in islice(lines_of(path, encoding), start + titled, None):
             if line.startswith("#") and not layout.is_row(line, width):
                 comments.append((count, line))
             elif line.strip() or len(layout.cells(line)) == width:  # tabs alone: missing points
+                if layout.splits_row(line):
+                    allowed = f"comments that begin a line or follow a row (line {number}: {line[:40]!r})"
+                    raise InputError("path", str(path), allowed)
                 count += 1
-                yield number, line
+                yield number, line.replace(corner, "nan", 1) if corner and count == 1 else line
 
     notes: list[str] = []
     rows = _plain_numbers(layout, (line for _, line in data()))
@@ -109,7 +94,11 @@ def read_table(path: Path) -> TextTable:
         notes = [_EMPTY.format("last")]
     rows[np.isinf(rows)] = np.nan
     header = tuple(line for line in lines[:start] if line.strip(",; \t"))
-    rows, labels = without_labels(path, rows, sample)
+    if stated := _NO_DATA.search("\n".join(header)):
+        absent = rows == float(stated[2])
+        rows[absent] = np.nan
+        notes.append(f"{np.count_nonzero(absent)} points of {stated[0]}, as the header states, are missing")
+    rows, labels = without_labels(path, rows, sample, corner)
     return TextTable(rows, header, (*notes, *labels), tuple(comments))
 
 
@@ -128,6 +117,33 @@ class _Layout:
         """The entries of a line, without a comment at its end."""
         line = line.split("#")[0] if not line.startswith("#") else line
         return [cell.strip() for cell in line.split(self.separator)]
+
+    def splits_row(self, line: str) -> bool:
+        """Return whether a comment's mark stands before another entry: an unknown spelling, not a comment."""
+        before, mark, after = line.partition("#")
+        if not mark or line.startswith("#"):
+            return False
+        if self.separator is not None:
+            return before.rstrip(" ").endswith(self.separator)
+        return all(map(self.is_number, after.split()[1:])) and len(after.split()) > 1
+
+    def refuse_ambiguous(self, path: Path, lines: list[str], sample: list[list[str]]) -> None:
+        """Raise InputError where marks within numbers may be decimal or of thousands, or separate them."""
+        columns = [[row[k] for row in sample if k < len(row) and row[k]] for k in range(len(sample[0]))]
+        marked = [[cell for cell in column if "." in cell or "," in cell] for column in columns]
+        thousands = any(marked) and all(_THOUSANDS.fullmatch(cell) for cell in chain(*marked))
+        whole = [any(map(_WHOLE.fullmatch, column)) for column in columns]
+        mixed = any(part and some for part, some in zip(marked, whole, strict=True))
+        if thousands and (mixed or "," in chain.from_iterable(chain(*marked))):
+            found = next(chain(*marked))
+            raise InputError("path", str(path), f"decimal points (is {found!r} a thousand times as much?)")
+        if self.separator == "," and not any(marked):
+            zeros = any(len(cell) > 1 and cell[0] == "0" for cell in chain(*columns))
+            if zeros or (any(", " in line for line in lines) and any(map(_TIGHT.search, lines))):
+                found = f"are the commas in {lines[0][:40]!r} separators or decimal marks?"
+                raise InputError(
+                    "path", str(path), f"decimal points, or semicolons between entries ({found})"
+                )
 
     def ends(self, line: str) -> bool:
         """Return whether the separator ends the line."""

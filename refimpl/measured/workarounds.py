@@ -1,6 +1,6 @@
 """Files that SurfaceTopography refuses or reads wrongly, rewritten in memory so that it reads them right.
 
-As of version 1.27.1: X3P of other writers than its own, compressed SUR, the lateral unit of NMS.
+As of version 1.27.1: X3P of other writers than its own, compressed SUR, the lateral unit of NMS, Wyko's text.
 """
 
 from __future__ import annotations
@@ -12,12 +12,16 @@ import zipfile
 import zlib
 from pathlib import Path
 
+import numpy as np
+
 from refimpl.errors import InputError
+from refimpl.grid import Array
 from refimpl.measured.reading import MAX_BYTES
 
 Source = str | io.BytesIO
 
 X3P_REVISION = "ISO5436 - 2000"  # the one text that the library takes
+_X3P_DATA = "bindata/data.bin"
 NMS_UNIT = 1e-6  # its spacing is in nm (surfalize reads it so); the library takes it for mm
 _SUR_HEADER, _SUR_COMMENT = 512, "<hh"
 _SUR_LENGTHS_AT = 314  # bytes: lengths of comment and private zone
@@ -44,21 +48,44 @@ def _x3p(path: Path) -> tuple[Source, tuple[str, ...]]:
         revision = re.search(rb"<Revision>\s*([^<]*?)\s*</Revision>", text)
         found = revision.group(1).decode("latin-1") if revision else ""
         backslash = re.search(rb"<\w*Link>[^<]*\\[^<]*<", text)
-        if not folder and found == X3P_REVISION and not backslash and main == "main.xml":
+        bare = re.sub(rb"<!--.*?-->", b"", text, flags=re.DOTALL)
+        values = None if b"<DataLink>" in bare else _data_list(path, bare)
+        plain = not folder and found == X3P_REVISION and not backslash and main == "main.xml"
+        if plain and values is None:
             return str(path), ()
         if revision:
             text = text.replace(revision.group(0), f"<Revision>{X3P_REVISION}</Revision>".encode())
         text = re.sub(rb"<\w*Link>[^<]*", lambda m: m.group(0).replace(b"\\", b"/"), text)
         copy = io.BytesIO()
         with zipfile.ZipFile(copy, "w") as target:
+            if values is not None:
+                text = _linked(re.sub(rb"<!--.*?-->", b"", text, flags=re.DOTALL))
+                target.writestr(_X3P_DATA, values.tobytes())
             target.writestr("main.xml", text)
             for member in archive.namelist():
                 if member != main and member.startswith(folder) and not member.endswith("/"):
                     target.writestr(member[len(folder) :], archive.read(member))
     copy.seek(0)
     changed = [f"revision {found!r}"] if found != X3P_REVISION else []
+    changed += [] if values is None else ["its heights in main.xml"]
     changed += [f"folder {folder!r} in the archive"] if folder else []
     return copy, (f"X3P with {', '.join(changed)}",) if changed else ()
+
+
+def _data_list(path: Path, text: bytes) -> Array:
+    """Heights that stand in the XML, missing ones NaN."""
+    values = re.findall(rb"<Datum\s*(?:/>|>([^<]*)</Datum>)", text)
+    if any(b";" in v for v in values):
+        raise InputError("path", str(path), "X3P of a map of heights (this lists points of several axes)")
+    return np.array([float(v) if v.strip() else np.nan for v in values], dtype="<f8")
+
+
+def _linked(text: bytes) -> bytes:
+    """The XML with a link to doubles in place of its list."""
+    link = f"<DataLink><PointDataLink>{_X3P_DATA}</PointDataLink></DataLink>".encode()
+    text = re.sub(rb"<DataList>.*</DataList>", link, text, flags=re.DOTALL)
+    kind = re.compile(rb"(<CZ>.*?<DataType>)\s*\w\s*(</DataType>)", re.DOTALL)
+    return kind.sub(rb"\1D\2", text)
 
 
 def _sur(raw: bytes, path: Path) -> tuple[Source, tuple[str, ...]]:
@@ -82,3 +109,16 @@ def _sur(raw: bytes, path: Path) -> tuple[Source, tuple[str, ...]]:
         at += packed
     plain = b"DIGITAL SURF" + raw[12 : _SUR_HEADER + comment + private] + b"".join(data)
     return io.BytesIO(plain), ("compressed SUR, unpacked here",)
+
+
+def wyko_header(path: Path, header: tuple[str, ...]) -> tuple[str, ...]:
+    """The header of Wyko's text with all numbers as type 7, the one that the library sees, and a Mult.
+
+    Heights are in nm if the second flag of the first line is 1, else in Wavelength / Mult nm.
+    """
+    named = {line.split()[0] for line in header}
+    if "Wavelength" not in named and header[0].split()[-2] != "1":
+        raise InputError("path", str(path), "Wyko's text with a Wavelength, which scales its heights")
+    number = re.compile(r"^(Mult|Wavelength|Aspect|Pixel_size)\s+\d+\s")
+    typed = tuple(number.sub(r"\1 7 ", line) for line in header)
+    return typed if "Mult" in named else (typed[0], "Mult 7 2 1", *typed[1:])

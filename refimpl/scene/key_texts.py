@@ -48,7 +48,7 @@ BODY: Texts = {
 MATERIAL: Texts = {
     "E": ("Pa", 'Young\'s modulus; `"rigid"` for a rigid body, at most one of the two'),
     "nu": ("", "Poisson's ratio"),
-    "hardness": ("Pa", "contact pressures end there (`plastic`); the smaller of two counts"),
+    "hardness": ("Pa", "contact pressures are capped there (`plastic`); the smaller of two counts"),
 }
 
 FRICTION: Texts = {

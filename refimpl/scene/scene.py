@@ -65,7 +65,7 @@ class Scene:
     sliding_direction : phi (rad)
     sliding_offset : how far the upper body has slid (m); the lower surface is sampled at x + offset
     periodic : the doubly periodic problem instead of a half-space that is free outside the domain
-    plastic : whether pressures end at the hardness of the softer body; None: where they reach it
+    plastic : whether pressures are capped at the hardness of the softer body; None: where they reach it
     size : lengths ``(Lx, Ly)`` of a rectangular domain (m), in place of ``side``
 
     Raises

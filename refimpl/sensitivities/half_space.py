@@ -27,7 +27,14 @@ from refimpl.surfaces import ArraySurface
 
 ACCEPTED = 0.02  # relative: the paper's "less than 2 %"
 JUDGED_TO = 20.0  # degrees: the steepest of the 56 contacts that the advice was judged on
-UNDER_LOAD = ("approach", "friction_coefficient", "contact_area", "max_pressure", "binormal_force")
+UNDER_LOAD = (
+    "approach",
+    "friction_coefficient_corrected",
+    "friction_coefficient",
+    "contact_area",
+    "max_pressure",
+    "binormal_force",
+)
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,14 @@ from refimpl.sensitivities.half_space import (
 from refimpl.solution.solution import Solution
 from refimpl.surfaces import Flat
 
-NUMBERS = ("friction_coefficient", "contact_area", "max_pressure", "approach", "normal_force")
+NUMBERS = (
+    "friction_coefficient_corrected",
+    "friction_coefficient",
+    "contact_area",
+    "max_pressure",
+    "approach",
+    "normal_force",
+)
 LIGHT = 0.05  # mean pressure over E* Sdq by default: about a tenth of the area is in contact
 _SHORT = 0.1  # largest share of the mean square slope at short waves without a sentence
 

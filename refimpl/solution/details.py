@@ -1,4 +1,4 @@
-"""What a solve leaves behind a `Solution`: state, evidence and grids, for studies and for what judges it."""
+"""Details behind a `Solution`: state, evidence and grids, for studies and for the code that judges it."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class _Parts:
 
 @dataclass(frozen=True, eq=False)
 class Details(_Parts):
-    """What solvers keep of a solve.
+    """State, evidence and grids of a solve.
 
     evidence : state, features and effects on this grid, which numbers and arrays are read from
     cost : work of all grids

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from refimpl.model.friction import friction_coefficient_at
 from refimpl.model.materials import Material
 from refimpl.planning.plan import Plan
 from refimpl.scene.scene import Scene
@@ -17,6 +18,8 @@ from refimpl.surfaces import GaussianRoughness, SelfAffineRoughness, Sphere
 
 MODULI = (1e6, 2e12)  # Pa: from soft gels to twice diamond
 _STRONG = 10.0  # tau over the mean contact pressure
+_WEAK = 1e-3  # tau's share of mu
+_MEGAPASCALS = 1e3  # Pa: strengths that are typed in MPa are numbers below this
 _SOFTER = 5.0  # E over the hardness: 20 to 500 of metals, 10 to 20 of ceramics, 6 to 10 of hard carbon
 _INDEX = 1e3  # plasticity index
 _LENGTHS = ("correlation_length", "short_cut")  # roughness of longer ones is a smooth surface on the domain
@@ -42,6 +45,12 @@ def implausible(scene: Scene, plan: Plan) -> Iterator[str]:
         yield (
             f"tau, {scene.friction.jump:.4g} Pa, is {scene.friction.jump / mean:.3g} times the mean contact "
             "pressure to be expected: did you mean MPa (15 MPa is 15e6)?"
+        )
+    expected = friction_coefficient_at(scene.friction, mean) * mean if mean > 0 else 0.0
+    if 0 < scene.friction.jump < min(_WEAK * expected, _MEGAPASCALS):
+        yield (
+            f"tau, {scene.friction.jump:.4g} Pa, is less than {_WEAK:.1%} of the friction to be expected: "
+            "did you mean MPa (60 MPa is 60e6)?"
         )
     yield from _index(scene, plan)
 

@@ -45,7 +45,7 @@ class Record(_Fields):
 
     @property
     def status(self) -> Status:
-        """How the solve ended."""
+        """Status with which the solve ended."""
         return self.details.status
 
     @cached_property

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Unit(NamedTuple):
-    """A unit and what it is of the SI unit: a micrometre is 1e-6."""
+    """A unit and what it is of the SI unit: 1 um is 1e-6."""
 
     name: str
     size: float

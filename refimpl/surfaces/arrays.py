@@ -78,7 +78,7 @@ def sampling_note(shape: tuple[int, ...], grid: Grid) -> str:
 
 
 def interpolation_notes(shape: tuple[int, ...], grid: Grid) -> tuple[str, ...]:
-    """Return what a user should be warned of when data of that shape are used on a grid."""
+    """Return the warning for an array that is coarser than the grid; empty where it is not."""
     if all(points >= n for points, n in zip(shape, grid.shape, strict=True)):
         return ()
     return (

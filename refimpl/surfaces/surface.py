@@ -113,6 +113,16 @@ class Surface(ABC):
         formula."""
         return None
 
+    def data_points(self, grid: Grid) -> tuple[Array, tuple[float, float]]:
+        """Return the data's own heights (m; missing ones NaN) on a grid's domain, and their distances (m).
+
+        By default the heights at about the `pitch`.
+        """
+        pitch = self.pitch(grid.lengths) or min(grid.spacings)
+        counts = [max(2, round(length / pitch)) for length in grid.lengths]
+        fine = Grid((counts[0], counts[1]), grid.lengths, grid.periodic)
+        return self.sample(fine), fine.spacings
+
     def detail(self, spacing: float) -> Detail | None:
         """Return the finest detail of a random roughness on elements of a spacing (m); None for others."""
         return None
@@ -230,6 +240,10 @@ class ArraySurface(Surface):
     def pitch(self, lengths: tuple[float, float]) -> float:
         nx, ny = self.data.shape
         return float(min(lengths[0] / nx, lengths[1] / ny))
+
+    def data_points(self, grid: Grid) -> tuple[Array, tuple[float, float]]:
+        nx, ny = self.data.shape
+        return self.data, (grid.lengths[0] / nx, grid.lengths[1] / ny)
 
     def to_dict(self) -> dict[str, Any]:
         allowed = 'a surface that has a TOML form; save the array as .npy and read it by kind = "measured"'

@@ -51,6 +51,7 @@ def test_facet_edges_are_one_unit_of_arc_away() -> None:
         assert arc == pytest.approx(1.0, abs=1e-7)
 
 
+@pytest.mark.nightly
 def test_gentle_slopes_follow_first_order_theory() -> None:
     """Odd part in the slope at 1 degree, between crest and flank. Mesh level 2 leaves 0.004 % of flat."""
     up, down = (Waviness(s, 20.0, 0.1) for s in (1.0, -1.0))

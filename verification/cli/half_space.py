@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from verification.cli.grids import DEFAULT_TEXT, default_grid, own_points
 from verification.cli.options import Options, option, output_file
 from verification.cli.output import PICTURES, check_outputs, check_suffix, emit, files_of, refusal
 from verification.framework.text_table import columns, wrapped
@@ -19,12 +20,12 @@ ALONE = {"E": 200e9, "nu": 0.3, "tau": 0.0, "beta": 0.1}  # assumed for a surfac
 
 OPTIONS: Options = {
     "scene": option("a scene (.toml, or a shipped one's name), or a surface's file", metavar="SCENE|FILE"),
-    "--grid": option("elements along the longer side (default 128)", type=int, default=128),
+    "--grid": option(f"elements along the longer side ({DEFAULT_TEXT})", type=int),
     "--plot": option("map of the local coefficient error, .png or .svg", metavar="FILE", type=output_file),
 }
 SURFACE_FILE: tuple[str, str, Options] = (
     "a surface's file",
-    "its body is pressed by a rigid flat: the whole error of one body, none cancels",
+    "the surface is pressed by a rigid flat, so the error is that of one body without cancellation",
     {
         "--E": option("Young's modulus (Pa, default 200e9)", type=float),
         "--nu": option("Poisson's ratio (default 0.3)", type=float),
@@ -45,7 +46,7 @@ def surface(options: argparse.Namespace) -> int:
     check_suffix("--plot", options.plot, PICTURES)
     scene, note = _posed(options)
     check_outputs([Path(options.scene), *files_of(scene)], plot=options.plot, json=options.json)
-    verdict = surface_verdict(scene, options.grid)
+    verdict = surface_verdict(scene, options.grid or default_grid(scene))
     if options.plot is not None:
         from verification.cli.plot_surface import draw_local_error
 
@@ -72,10 +73,11 @@ def _posed(options: argparse.Namespace) -> tuple[Scene, str]:
         raise refusal("scene", options.scene, f"a scene's file (.toml), one of {known}, or a surface's file")
     reading = {name: given[name] for name in ("unit", "pixel_size") if name in given}
     taken = ALONE | {name: given[name] for name in ALONE if name in given}
+    measured = refimpl.MeasuredSurface(options.scene, **reading)
     scene = pressed_on_a_flat(
-        refimpl.MeasuredSurface(options.scene, **reading),
+        measured,
         refimpl.Material(taken["E"], taken["nu"]),
-        grid=options.grid,
+        grid=options.grid or own_points([measured], measured.extent((0.0, 0.0))),
         pressure=given.get("pressure"),
         friction=refimpl.Friction(taken["tau"], taken["beta"]),
     )

@@ -23,7 +23,7 @@ EPILOG = """examples:
   rough-friction keys --markdown docs/scene-file.md
 """
 
-HEAD = ("key", "unit", "default", "meaning", "type", "allowed", "also in")
+HEAD = ("key", "unit", "default", "meaning", "also in")
 
 OPTIONS: Options = {
     "word": option("keys with this word in them", metavar="WORD", nargs="?", default=""),
@@ -56,7 +56,10 @@ def run(options: argparse.Namespace) -> int:
 
 
 def page(text: str) -> str:
-    """Return a page with the table of keys after each comment that names one, ``<!-- NAME -->``."""
+    """Return a page with the table of keys after each comment that names one, ``<!-- NAME -->``.
+
+    What a key allows is printed at the prompt alone: with it the tables are too wide for a page.
+    """
     found = {title.removeprefix("surface, "): keys for title, keys in _tables().items()}
     tables = {name: _markdown_table(name, keys) for name, keys in found.items()}
     place = re.compile(rf"(<!-- ({'|'.join(tables)}) -->\n\n)(?:\|.*\n)*")
@@ -68,10 +71,9 @@ def _markdown_table(name: str, keys: tuple[Key, ...]) -> str:
     lines = [_row([title for title in HEAD if places or title != "also in"])]
     lines.append("|---" * (len(HEAD) - (not places)) + "|")
     for key in keys:
-        allowed = "" if key.allowed == key.kind else key.allowed
         where = [places.get(key.name, "")] if places else []
         default = key.default if key.default in ("required", "-") else f"`{key.default}`"
-        cells = [f"`{key.name}`", key.unit, default, key.meaning, key.kind, allowed, *where]
+        cells = [f"`{key.name}`", key.unit, default, key.meaning, *where]
         lines.append(_row(cells))
     return "\n".join(lines)
 

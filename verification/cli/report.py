@@ -29,7 +29,7 @@ OPTIONS: Options = {
     "--results": option("result file", metavar="FILE", type=Path, default=Path("results.json")),
     "--output": option("folder for the report", metavar="DIR", type=Path, default=Path("report")),
     "--committed": option("committed results (default: those of the package)", metavar="DIR", type=Path),
-    "--against": option("say what changed since this result file", metavar="OLD", type=Path),
+    "--against": option("add a section with the changes since this result file", metavar="OLD", type=Path),
     "--pdf": option("also print it to PDF, by an installed Chromium", action="store_true"),
     "--paper": option("size of paper (default a4)", choices=sorted(PAPERS), default="a4"),
 }

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import time
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from verification.cli.grids import DEFAULT_TEXT, default_grid
 from verification.cli.options import (
     Options,
     elements,
@@ -52,7 +54,6 @@ usable (its bar exceeds half of it, that of Q half of the tangential force); 2 b
 Shipped scenes: hertz, metal-polymer, rough-planes, table1-rough, table1-smooth.
 """
 
-DEFAULT_GRID = 256
 SUFFIXES = {"plot": PICTURES, "vtk": (".vtk", ".vtu"), "npz": (".npz",), "netcdf": (".nc",)}
 FILES = (*SUFFIXES, "patches")
 # Options of refimpl, which --help does not wait for.
@@ -74,7 +75,7 @@ ONE_OF = ("--grid", "--accuracy")
 OPTIONS: Options = {
     "scene": option("a scene's TOML file, or the name of a shipped scene", metavar="SCENE"),
     "--grid": option(
-        f"N elements along the longer side, or both numbers, 128x64 (default {DEFAULT_GRID})",
+        f"N elements along the longer side, or both numbers, 128x64 ({DEFAULT_TEXT})",
         metavar="N",
         type=elements,
     ),
@@ -83,7 +84,7 @@ OPTIONS: Options = {
     "--max-memory": option("with --accuracy: at most so many GB in all", metavar="GB", type=gigabytes),
     "--accuracy": option("refine until the error bar is this share of mu", metavar="A", type=float),
     "--quantity": option(
-        f"what --accuracy is about: {', '.join(ACCURATE)} (default mu; without friction, A)",
+        f"quantity whose bar --accuracy limits: {', '.join(ACCURATE)} (default mu; without friction, A)",
         metavar="Q",
         choices=ACCURATE,
     ),
@@ -132,9 +133,10 @@ def run(options: argparse.Namespace) -> int:
     import refimpl
     from refimpl.scene.scene_file import read_tolerances
 
+    began = time.perf_counter()
     scene = _read_scene(options)
     if options.grid is None and options.accuracy is None:
-        options.grid = DEFAULT_GRID
+        options.grid = default_grid(scene)
     keywords = {name: getattr(options, name) for name in (*PASSED_ON, *SWITCHES, *LIMITS)}
     if options.explain:
         return _explain(scene, options, keywords)
@@ -148,7 +150,8 @@ def run(options: argparse.Namespace) -> int:
         show_finished(interrupt, options.scene)
         raise
     _write_files(solution, scene, options)
-    found, text = document(solution, options.scene), table(solution, options.scene)
+    found = document(solution, options.scene)
+    text = table(solution, options.scene, waited=time.perf_counter() - began)
     if tolerances or options.budget:
         text = _with_budget(scene, solution, tolerances, options, found, text)
     unusable = not_usable(solution) if options.strict else []

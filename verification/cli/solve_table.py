@@ -42,10 +42,14 @@ def document(solution: Solution, scene: str) -> dict[str, object]:
     return {"scene": scene, **summary, "not_usable": not_usable(solution), "provenance": provenance()}
 
 
-def table(solution: Solution, scene: str) -> str:
-    """Return the numbers, how well they converged, the terms not modelled, and the warnings."""
+def table(solution: Solution, scene: str, waited: float | None = None) -> str:
+    """Return the numbers, how well they converged, the terms not modelled, and the warnings.
+
+    ``waited`` : seconds with reading, bars and warnings; by default those of the solves alone
+    """
     from refimpl.solution.display import rows
 
+    seconds = solution.cost.seconds if waited is None else waited
     numbers = [
         [name, value, " ".join(rest), unit] for name, (value, *rest), unit in rows(solution, "command")
     ]
@@ -60,7 +64,7 @@ def table(solution: Solution, scene: str) -> str:
         if not term["included"]
     ]
     parts = [
-        f"{scene}: {solution.grid} elements, method {summary['method']}, {summary['cost']['seconds']:.2f} s\n"
+        f"{scene}: {solution.grid} elements, method {summary['method']}, {seconds:.2f} s\n"
         + wrapped(NEXT.get(solution.status.name, ""), f"status: {solution.status.name}  "),
         columns(numbers),
         f"certificate, each residual within {summary['tolerance']:g} (0 is exact):\n{columns(certificate)}",

@@ -34,7 +34,7 @@ OPTIONS: Options = {
         "of aperiodic,periodic,load,approach (default),coupling,rectangle,oblong-elements,hardness",
         metavar="LIST",
     ),
-    "--largest": option("most elements a side that it should be given", metavar="M", type=int),
+    "--largest": option("largest number of elements per side", metavar="M", type=int),
     "--precision": option("relative residual that it claims (default 1e-8)", metavar="P", type=float),
     "--strongest": option(
         "largest strength of coupling, pi |c0| E* beta, that it should be given", metavar="K", type=float

@@ -35,9 +35,9 @@ EPILOG = """examples:
   rough-friction sweep study.toml --scheduler tcp://127.0.0.1:8786 --csv study.csv
   rough-friction sweep study.toml --plot mu.svg --x load --by lower_rms
 
-A study is a TOML file, or the name of a shipped one. Killed at any moment, the same command goes on
-where it was; runs that the store has are not done again. Exit status 1 when a run failed, and its
-message is shown, or did not converge: then its row says so by its status.
+A study is a TOML file, or the name of a shipped one. If the command is killed, run it again: it resumes,
+and finished runs are not repeated. Exit status 1 if a run failed or did not converge; the message of a
+failed run is printed, and the status of the others stands in their rows.
 
   scene = "table1-rough"      # a shipped scene, or a scene file relative to this file
   realisations = 75           # number per random roughness; seeds from first_seed (default 1;
@@ -67,7 +67,7 @@ OPTIONS: Options = {
     "--y": option(
         "with --plot: the column along y (default friction_coefficient_corrected)", metavar="COLUMN"
     ),
-    "--by": option("with --plot: the column that tells curves apart", metavar="COLUMN"),
+    "--by": option("with --plot: column that distinguishes the curves", metavar="COLUMN"),
 }
 
 
@@ -88,7 +88,7 @@ def run(options: argparse.Namespace) -> int:
     _check_suffixes(store=options.store, **written)
     if options.scheduler is None:  # a cluster's memory is not this machine's
         posable.check_memory(study)
-    for note in study.notes:
+    for note in (*study.notes, *directions_note(study)):
         print(f"rough-friction sweep: {note}", file=sys.stderr)
     line = _Line()
     try:
@@ -104,6 +104,21 @@ def run(options: argparse.Namespace) -> int:
         return 1
     _export(options, done, store)
     return 1 if done.failures or done.unconverged else 0
+
+
+def directions_note(study: Study) -> list[str]:
+    """Return a hint where directions vary and one has no opposite; else nothing."""
+    turns = [float(phi) for phi in study.vary.get("sliding_direction", ())]
+    if len(turns) < 2 or all(any(_opposite(one, other) for other in turns) for one in turns):
+        return []
+    return [
+        "mu over the direction holds the mean slope of a single specimen, which looks like lay: average each "
+        "phi with phi + pi, where it has the opposite sign"
+    ]
+
+
+def _opposite(one: float, other: float) -> bool:
+    return math.cos(one - other) < -1 + 1e-6
 
 
 def check_plot(options: argparse.Namespace, study: Study) -> None:

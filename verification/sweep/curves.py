@@ -29,7 +29,7 @@ class Point:
 
 
 Curves = dict[object, list[Point]]
-"""Points in the order of x, by the value of the column that tells curves apart."""
+"""Points in the order of x, by the value of the column that distinguishes the curves."""
 
 
 def curves(rows: Sequence[Row], x: str, y: str, by: str | None = None) -> Curves:

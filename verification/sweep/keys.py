@@ -60,7 +60,7 @@ _SETTINGS: Mapping[str, str] = {
     "slope_correction": "exact tractions of oblique facets in Eq. (7)",
     "tolerance": "tolerance of the certificate; not set: 1e-8, of the paper's scheme 1e-4",
     "accuracy": "refine every run until the error bar is this share of `quantity`, in place of a grid",
-    "quantity": "number that the accuracy is about; not set: `friction_coefficient_corrected`, "
+    "quantity": "number whose error bar `accuracy` limits; not set: `friction_coefficient_corrected`, "
     "without friction `contact_area`",
 }
 

@@ -15,6 +15,8 @@ from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.refinement import (
     FIRST_GRIDS,
     GRID_SIZES,
+    DataShares,
+    longer_side,
     next_grid,
     refine_until,
     relative_bound,
@@ -132,9 +134,36 @@ def test_data_that_leave_more_open_than_the_accuracy_end_at_four_elements_betwee
         own = {"contact_area": {"data": share * AREA_LIMIT / min(M / 96, 1.0)}}
         return replace(made_up(M), parts=own)
 
-    found = refine_until(result_at, 0.0055, "contact_area", grid_sizes=(384, 2048), finest_by_data=4.0 * 96)
+    data = DataShares(lambda M: 1 / min(M / 96, 1.0), finest=4.0 * 96)
+    found = refine_until(result_at, 0.0055, "contact_area", grid_sizes=(384, 2048), data=data)
     assert found.results[-1].grid.shape[0] == finest
     assert ("points of the data" in found.refusal) is (share > 0.0055)
+
+
+def test_neglected_terms_come_back_once_they_are_in_the_way() -> None:
+    """0.8 % on all grids by neglected terms where 1 % is asked for, nothing without them."""
+    asked: list[int] = []
+
+    def result_at(M: int, neglected: float = 0.008) -> GridFeatures:
+        asked.append(M)
+        return replace(made_up(M), parts={"contact_area": {"neglected": neglected * AREA_LIMIT}})
+
+    found = refine_until(result_at, 0.01, "contact_area", restored=lambda: result_at(asked[-1], 0.0))
+    assert found.refusal == ""
+    assert asked[:3] == [*FIRST_GRIDS, FIRST_GRIDS[-1]]
+
+
+def test_what_no_grid_reduces_is_summed_and_ends_the_refinement_with_names_and_sizes() -> None:
+    """0.7 % by data and by the border each, 1 % asked for: neither alone exceeds it, both do."""
+
+    def result_at(M: int) -> GridFeatures:
+        own = {"data": 0.007 * AREA_LIMIT, "border": 0.007 * AREA_LIMIT}
+        return replace(made_up(M), parts={"contact_area": own})
+
+    found = refine_until(result_at, 0.01, "contact_area", data=DataShares(lambda M: 1.0, finest=4.0 * 96))
+    assert "points of the data" in found.refusal
+    assert "beyond the border" in found.refusal
+    assert longer_side(found.results[-1]) <= 4 * 96
 
 
 def test_nothing_in_contact_ends_the_refinement() -> None:

@@ -35,6 +35,17 @@ def test_semicolons_and_tabs_with_decimal_commas(tmp_path: Path, separator: str)
         read_rows(_written(tmp_path, text.replace("10,5", "1.000,5")))
 
 
+@pytest.mark.parametrize("first", [0, 1])
+@pytest.mark.parametrize("mark", ["", '"'])
+def test_an_index_column_of_r_or_pandas_is_dropped_with_a_note(tmp_path: Path, first: int, mark: str) -> None:
+    body = "".join(f"{mark}{k + first}{mark},{5 + k},0.2,0.01\n" for k in range(3))
+    with pytest.warns(UserWarning, match="unnamed first column, which counts the rows, was dropped"):
+        rows = read_rows(_written(tmp_path, f"{mark}{mark},load,mu,u_mu\n{body}"))
+    assert [row.load for row in rows] == [5, 6, 7]
+    with pytest.raises(InputError, match="data column = ''"):  # of something else
+        read_rows(_written(tmp_path, ",load,mu,u_mu\n" + "3,5,0.2,0.01\n1,6,0.2,0.01\n"))
+
+
 def test_a_row_overrides_the_scene() -> None:
     scene = Row(9.0, 0.1, 0.01, sliding_direction=0.5, sliding_offset=2e-6).of(read_scene("hertz"))
     assert (scene.load, scene.sliding_direction, scene.sliding_offset) == (9.0, 0.5, 2e-6)

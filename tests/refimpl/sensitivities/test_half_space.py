@@ -38,6 +38,7 @@ NUMBERS = (
     "contact_area",
     "max_pressure",
     "binormal_force",
+    "friction_coefficient_corrected",
 )
 
 

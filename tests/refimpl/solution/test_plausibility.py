@@ -141,3 +141,17 @@ def test_the_plasticity_index_is_that_of_both_bodies_slopes() -> None:
         alone: rf.Body = getattr(rough, other)
         without = replace(alone, material=replace(alone.material, hardness=None))
         assert len(notes(with_body(other, without, with_body(body, less, rough)))) == 1
+
+
+def test_a_tau_without_effect_asks_for_its_unit() -> None:
+    """0.1 of beta: 60 Pa of a mean pressure of 1 GPa are nothing, 60 MPa are three eighths of mu."""
+    law = [rf.Friction(tau=tau, beta=0.1) for tau in (60.0, 60e6, 0.0)]
+    found = [notes(replace(SCENE, friction=one)) for one in law]
+    assert ["MPa" in " ".join(lines) for lines in found] == [True, False, False]
+
+
+def test_a_load_beyond_the_hardness_names_a_domain_of_nanometres() -> None:
+    hard = rf.Body(rf.Material(E=210e9, nu=0.3, hardness=3e9), rf.Flat())
+    scene = rf.Scene(hard, hard, friction=rf.Friction(), load=10.0, size=(256e-9, 256e-9))
+    with pytest.raises(rf.InputError, match="units of the map"):
+        rf.solve(scene, 16)

@@ -130,6 +130,17 @@ def write_opd(path: Path, z: np.ndarray) -> None:
     path.write_bytes(b"\x01\x00" + directory + b"".join(data for *_, data in blocks))
 
 
+def write_wyko_text(path: Path, z: np.ndarray) -> None:
+    """Wyko's ASCII: 2-byte Mult, lines of one x from below in units of 633 nm / 5, another array before."""
+    nx, ny = z.shape
+    head = "Wyko ASCII Data File Format 0\t0\t1\nX Size\t{}\nY Size\t{}\nBlock Name\tType\tLength\tValue\n"
+    text = head.format(nx, ny) + f"Pixel_size\t7\t4\t{PIXEL[0] * 1e3}\nAspect\t7\t4\t{PIXEL[1] / PIXEL[0]}\n"
+    text += f"Intensity\t3\t{2 * nx * ny}\t\n" + "\n".join("\t".join(["7"] * ny) for _ in range(nx))
+    text += f"\nTitle\t5\t20\tplate\nMult\t6\t2\t5\nWavelength\t7\t4\t633.0\nRAW_DATA\t3\t{4 * nx * ny}\t\n"
+    rows = [["Bad" if np.isnan(v) else f"{v / 633e-9 * 5:.17g}" for v in row] for row in z]
+    path.write_text(text + "\n".join("\t".join(row) for row in rows) + "\n")
+
+
 def write_plu(path: Path, z: np.ndarray) -> None:
     """Sensofar: lines from the top in um, 1000001 for a missing point."""
     nx, ny = z.shape

@@ -12,16 +12,21 @@ import h5py
 import numpy as np
 import pytest
 import SurfaceTopography
+import SurfaceTopography.Container.IO
+from scipy.io import savemat
+from SurfaceTopography.Container.SurfaceContainer import InMemorySurfaceContainer
 
 from refimpl.errors import InputError, size_text
 from refimpl.grid import Grid
 from refimpl.measured import MeasuredSurface, missing_points
 from refimpl.measured.readers import read
-from refimpl.measured.reading import ARRAY, IMAGE
+from refimpl.measured.reading import ALONG_Y, ARRAY, IMAGE
 from tests.refimpl.surfaces import instrument_writers as write
 from tests.refimpl.surfaces.instrument_writers import (
     BOTH,
     MAP,
+    NX,
+    NY,
     PIXEL,
     Writer,
     same,
@@ -47,6 +52,7 @@ FORMATS = [
     ("map.sur", write.write_sur, {}, SINGLE, IMAGE),
     ("packed.sur", write.write_packed_sur, {}, SINGLE, IMAGE),
     ("map.opd", write.write_opd, {}, SINGLE, IMAGE),
+    ("wyko.asc", write.write_wyko_text, {}, 1e-20, ALONG_Y),
     ("map.plu", write.write_plu, {}, SINGLE, IMAGE),
     ("map.gwy", write.write_gwy, {}, 1e-20, IMAGE),
     ("map.nc", write.write_nc, {}, 1e-20, ARRAY),
@@ -180,6 +186,28 @@ def test_sur_with_any_micro_sign(tmp_path: Path, unit: bytes) -> None:
     np.testing.assert_allclose(reading.pixel, PIXEL, rtol=1e-7)
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "factor"),
+    [
+        ("Mult\t6\t2\t5\n", "", 5),
+        ("Mult\t6\t2\t5", "Mult\t7\t4\t5.0", 1),
+        ("Format 0\t0", "Format 0\t1", 5 / 633),
+        ("Wavelength\t7\t4\t633.0\n", "", None),
+    ],
+)
+def test_wykos_text_is_in_wavelengths_over_mult(
+    tmp_path: Path, old: str, new: str, factor: float | None
+) -> None:
+    write.write_wyko_text(tmp_path / "map.asc", MAP)
+    changed = (tmp_path / "map.asc").read_text().replace(old, new)
+    (tmp_path / "map.asc").write_text(changed)
+    if factor is None:
+        with pytest.raises(InputError, match="Wyko's text with a Wavelength"):
+            read(tmp_path / "map.asc")
+    else:
+        same(read(tmp_path / "map.asc").heights / factor)
+
+
 def channels(path: Path) -> Path:
     with h5py.File(path, "w") as file:
         file["first"], file["Second"] = np.zeros((6, 8)), np.nan_to_num(MAP)
@@ -245,3 +273,104 @@ def test_a_map_of_which_almost_all_is_missing_is_filled() -> None:
     assert np.isfinite(filled).all()
     assert (filled >= 1.0).all()
     assert (filled <= 2.0).all()
+
+
+@pytest.mark.parametrize("suffix", [".mat", ".npz"])
+@pytest.mark.parametrize("grid", ["xy", "ij", "vectors"])
+def test_z_beside_x_and_y_is_the_map_where_they_say(tmp_path: Path, suffix: str, grid: str) -> None:
+    """MATLAB's meshgrid has x along the columns; the arrays tell, and the pitch."""
+    x, y = 2.0 * np.arange(NX), 3.0 * np.arange(NY)
+    z = 1e6 * (MAP if grid == "ij" else MAP.T)
+    arrays = dict(zip("XYZ", (x[None, :], y[:, None], z), strict=True))
+    if grid != "vectors":
+        arrays |= dict(zip("XY", np.meshgrid(x, y, indexing=grid), strict=True))
+    save = savemat if suffix == ".mat" else lambda path, a: np.savez(path, **a)
+    save(tmp_path / f"a{suffix}", arrays)
+    found = read(tmp_path / f"a{suffix}", unit="um")
+    same(found.heights, 1e-20)
+    np.testing.assert_allclose(found.pixel, PIXEL, rtol=1e-12)
+    assert found.notes == ("channel 'Z' was read; there are also 'X', 'Y'",)
+    solved = MeasuredSurface(tmp_path / f"a{suffix}", unit="um").notes(Grid((8, 8), (8e-6, 12e-6)))
+    assert any("channel 'Z' was read" in note for note in solved)
+    save(tmp_path / f"b{suffix}", {"first": z, "second": z})
+    with pytest.raises(InputError, match=r"channel = None: .*heights in b\.\w+: 0 'first', 1 'second'"):
+        read(tmp_path / f"b{suffix}", **BOTH)
+
+
+@pytest.mark.parametrize(("kind", "missing"), [("D", True), ("I", False)])
+def test_x3p_with_its_heights_in_the_xml(tmp_path: Path, kind: str, missing: bool) -> None:
+    """As the standard's own samples: a Datum for each point; whole numbers with increment and offset."""
+    z = MAP if missing else COMPLETE
+    write.write_x3p(tmp_path / "map.x3p", z)
+    with zipfile.ZipFile(tmp_path / "map.x3p") as archive:
+        main = archive.read("main.xml").decode()
+    step, low = (1.0, 0.0) if kind == "D" else (1e-9, 1e-8)
+    shown = [f"{(v - low) / step:.17g}" if kind == "D" else f"{(v - low) / step:.0f}" for v in z.T.ravel()]
+    listed = "".join("<Datum/>" if v == "nan" else f"<Datum> {v}\n</Datum>" for v in shown)
+    head, rest = main.split("<DataLink>")
+    scale = f"<DataType>{kind}</DataType><Increment>{step}</Increment><Offset>{low}</Offset>\n</CZ>"
+    head = head[: head.index("<DataType>", head.index("<CZ>"))] + scale + head[head.index("</CZ>") + 5 :]
+    comment = "<!-- <DataLink> <Datum>9</Datum> -->"
+    main = f"{head}{comment}<DataList>{listed}</DataList>{rest.split('</DataLink>')[1]}"
+    with zipfile.ZipFile(tmp_path / "map.x3p", "w") as archive:
+        archive.writestr("main.xml", main)
+    reading = read(tmp_path / "map.x3p")
+    np.testing.assert_allclose(reading.heights, z, rtol=0, atol=1e-20)
+    np.testing.assert_allclose(reading.pixel, PIXEL, rtol=1e-12)
+    assert reading.notes == ("X3P with its heights in main.xml",)
+
+
+def test_a_container_of_contact_engineering_gives_each_of_its_maps(tmp_path: Path) -> None:
+    """Written by the library, with netCDF files inside, as the store's own downloads have."""
+    one, two = write.topography(MAP), write.topography(2 * COMPLETE)
+    for name, map_ in (("one", one), ("two", two)):
+        map_.info["name"] = name
+    for maps, path in (([one, two], "both.zip"), ([two], "two.zip")):
+        SurfaceTopography.Container.IO.write_containers(
+            [InMemorySurfaceContainer(maps)], str(tmp_path / path)
+        )
+    with pytest.raises(
+        InputError, match=r"channel = None: expected the one that is heights in both.zip: 0 '"
+    ):
+        read(tmp_path / "both.zip")
+    both = [read(tmp_path / "both.zip", channel=k) for k in (0, 1)]
+    same(both[0].heights, 1e-18)
+    np.testing.assert_allclose(both[1].heights, 2 * COMPLETE, rtol=0, atol=1e-18)
+    np.testing.assert_allclose(both[0].pixel, PIXEL, rtol=1e-9)
+    assert "of a container of contact.engineering" in both[0].notes[0]
+    assert len(both[0].channels) == 2
+    assert read(tmp_path / "two.zip").orientation == ARRAY
+    with pytest.raises(InputError, match=r"a channel of both\.zip"):
+        read(tmp_path / "both.zip", channel="three")
+
+
+GSF = b"Gwyddion Simple Field 1.0\nXRes = 2\nYRes = 2\n\0\0\0\0" + bytes(16)
+STL = b"made by hand".ljust(80) + b"\2\0\0\0" + bytes(100)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "kind", "remedy"),
+    [
+        ("a.png", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR" + bytes(90), "PNG picture", "brightness is not heights"),
+        ("a.dat", b"\xff\xd8\xff\xe0\0\x10JFIF" + bytes(90), "JPEG picture", "export heights"),
+        ("a.gsf", GSF, "Gwyddion simple field", r"as \.gwy"),
+        ("a.stl", STL, "STL mesh", "resample"),
+        ("b.stl", b"solid plate\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1\n", "STL mesh", "resample"),
+        ("a.xls", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600), "Excel or OLE", "CSV"),
+        ("a.pdf", b"%PDF-1.4\n1 0 obj\n", "PDF", "export"),
+        ("xl/workbook.xml", None, "Excel file", "CSV"),
+        ("notes.txt", None, "ZIP archive of other files", "unpack"),
+    ],
+)
+def test_a_file_of_another_kind_is_named_with_the_remedy(
+    tmp_path: Path, name: str, content: bytes | None, kind: str, remedy: str
+) -> None:
+    path = tmp_path / Path(name).name
+    if content is None:
+        path = tmp_path / "a.zip"
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr(name, "hello")
+    else:
+        path.write_bytes(content)
+    with pytest.raises(InputError, match=rf"expected a map of heights: this is an? {kind}.*; .*{remedy}"):
+        MeasuredSurface(path, unit="um", pixel_size=1e-6).reading  # noqa: B018  # reading is what raises

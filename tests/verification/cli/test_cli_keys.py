@@ -26,10 +26,11 @@ PAGE = ROOT / "docs" / "scene-file.md"
 def test_the_tables_of_the_committed_page_are_the_codes(tmp_path: Path) -> None:
     committed, made = PAGE.read_text(encoding="utf-8"), tmp_path / "page.md"
     made.write_text(re.sub(r"(?<= -->\n\n)(\|.*\n)+", "", committed), encoding="utf-8")
-    assert "|---" not in made.read_text(encoding="utf-8")
+    other = made.read_text(encoding="utf-8").count("\n|---")
+    assert other < committed.count("\n|---")
     assert main(["keys", "--markdown", str(made)]) == 0
     assert made.read_text(encoding="utf-8") == committed
-    assert committed.count("\n|---") == sum(map(bool, [*TABLES.values(), *study_keys().values()]))
+    assert committed.count("\n|---") - other == sum(map(bool, [*TABLES.values(), *study_keys().values()]))
     assert [kind for kind in KINDS if f'`kind = "{kind}"`' not in committed] == []
 
 

@@ -25,7 +25,6 @@ CALLS = {
         ["./reader", "data", "{name}"],
     ],
     "reader.m": [["octave", "--norc", "--eval", "reader('data', '{name}')"]],
-    "reader.jl": [["julia", "--startup-file=no", "reader.jl", "data", "{name}"]],
 }
 
 

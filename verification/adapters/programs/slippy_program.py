@@ -1,4 +1,4 @@
-"""SlipPY 0.5.2 as a program: `PYTHON slippy_program.py DIRECTORY`, by files as in docs/check-your-solver.md.
+"""SlipPY 0.5.2 as a program: `PYTHON slippy_program.py DIRECTORY`, by files as in docs/the-suites-problem.md.
 
 SlipPY requires numpy below 1.21, hence Python 3.9 at most, so it has an interpreter of its own and this file
 imports nothing of this package. Its Polonsky-Keer solver gets the influence matrix that SlipPY defines in

@@ -42,7 +42,7 @@ def flat_run(order: int, level: int, nu: float) -> tuple[float, float]:
     return float(worst), body.mesh.t.shape[1] ** -0.5
 
 
-@case("appendix-fem/flat-2d", metric="at_most", tolerance=1e-5)
+@case("appendix-fem/flat-2d", metric="at_most", tolerance=1e-5, tier="full")
 def flat_2d() -> Measured:
     """Flat boundary under a strip, plane strain.
 
@@ -54,7 +54,7 @@ def flat_2d() -> Measured:
     return Measured(value=max(errors.values()), data={"relative error": errors})
 
 
-@case("appendix-fem/flat-2d-order", metric="at_least", tolerance=3.0)
+@case("appendix-fem/flat-2d-order", metric="at_least", tolerance=3.0, tier="full")
 def flat_order() -> Measured:
     """Observed order on the flat boundary.
 
@@ -67,7 +67,7 @@ def flat_order() -> Measured:
     return Measured(value=fit.order, data={"relative error": errors, "local orders": list(fit.local)})
 
 
-@case("appendix-fem/exact-bump", metric="at_most", tolerance=0.002)
+@case("appendix-fem/exact-bump", metric="at_most", tolerance=0.002, tier="full")
 def exact_bump() -> Measured:
     """Pressed flank of a smooth bump and of a dent, at finite slope.
 

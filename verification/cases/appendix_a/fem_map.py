@@ -25,7 +25,7 @@ def shipped_map() -> CoefficientMap:
         return CoefficientMap.read(path)
 
 
-@case("appendix-fem/six-map-points", metric="at_most", tolerance=0.05)
+@case("appendix-fem/six-map-points", metric="at_most", tolerance=0.05, tier="full")
 def six_map_points() -> Measured:
     """Six points of the shipped map, solved afresh between its nodes.
 

@@ -135,7 +135,7 @@ def image_difference(trial: Trial, image: str) -> float:
     return max(off, abs(found.binormal_force - sign * base.binormal_force) / base.normal_force)
 
 
-@case("rectangles/images", metric="at_most", tolerance=1e-12)
+@case("rectangles/images", metric="at_most", tolerance=1e-12, tier="full")
 def images() -> Measured:
     """Mirrored and rotated copies of rectangular scenes.
 

@@ -152,7 +152,7 @@ def figure_data(found: Kappas) -> dict[str, object]:
     }
 
 
-@case("reference/self-affine-kappa", metric="at_most", tolerance=0.3)
+@case("reference/self-affine-kappa", metric="at_most", tolerance=0.3, tier="full")
 def kappa_range() -> Measured:
     """Self-affine surfaces: slope of the area-load line over Nayak's parameter and the Hurst exponent.
 

@@ -12,7 +12,7 @@ from refimpl.scene.parameters import with_parameter
 from refimpl.scene.scene import Body
 from verification.cases import Measured, case, family
 from verification.coverage.identification import SETS, TableSet, study, summary
-from verification.coverage.synthetic_tables import GRIDS, KINDS, ROUGHNESS_TOLERANCE, SHARP_GRID
+from verification.coverage.synthetic_tables import ROUGHNESS_TOLERANCE, SHARP_GRID
 
 OUTLIER_ROW, OUTLIER = 4, 1.10
 FINE, COARSE = 256, 128
@@ -28,18 +28,6 @@ def _coverage(tables: TableSet, seeds: range) -> Measured:
     value = 0.0 if wrong or failed else least
     note = f"{found['twins']} twins, {found['narrow']} narrow; {wrong} warnings wrong, {failed} not solved"
     return Measured(value=value, data=found, note=note)
-
-
-@case("identification/twins-sample", metric="at_least", tolerance=0.75)
-def synthetic_sample() -> Measured:
-    """95 % intervals of tau, beta and a new load's mu, one twin of each kind on {GRIDS[0]} elements.
-
-    Claim: The intervals cover the truth on balls and planes, elastic and at the hardness.
-    Source: as identification/twins, other seeds
-    Tolerance: three of four twins: one miss among four has a probability of 0.17 at 95 %
-    """
-    stop, step = SETS["drawn"].seeds.stop, len(GRIDS)
-    return _coverage(SETS["drawn"], range(stop, stop + step * len(KINDS), step))
 
 
 @family(

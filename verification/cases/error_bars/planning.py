@@ -46,7 +46,7 @@ def scenes() -> dict[str, tuple[rf.Scene, bool | None]]:
 
 
 def bare(scene: rf.Scene) -> Counter:
-    """The operations of normal contact alone, planned by nobody."""
+    """Operation counts of normal contact, without the planner."""
     counter = Counter()
     problem = discretise(replace(scene, friction=rf.Friction()), scene.grid(M), BARE)
     solve_fft(problem, 1e-8, counter)

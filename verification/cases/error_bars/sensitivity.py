@@ -84,7 +84,7 @@ def _differences(seed: int) -> tuple[list[tuple[str, float]], int]:
     return compared, skipped
 
 
-@case("sensitivity/finite-differences", metric="at_most", tolerance=1e-4)
+@case("sensitivity/finite-differences", metric="at_most", tolerance=1e-4, tier="full")
 def finite_differences() -> Measured:
     """Derivatives against finite differences.
 
@@ -155,7 +155,7 @@ def finer_grids() -> Measured:
     return Measured(min(shares.values()), data=data, note=f"{len(compared)} derivatives; medians of {note}")
 
 
-@case("sensitivity/drawn-inputs", metric="at_most", tolerance=0.1)
+@case("sensitivity/drawn-inputs", metric="at_most", tolerance=0.1, tier="full")
 def drawn_inputs() -> Measured:
     """Input uncertainty against drawn inputs.
 

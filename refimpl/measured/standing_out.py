@@ -1,0 +1,67 @@
+"""Points and whole lines of a measured map that stand out: spikes of an instrument, scars of a scan."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from refimpl.grid import Array
+from refimpl.measured.missing_points import fill
+from refimpl.measured.preparation import (
+    MAD_TO_RMS,
+    NEIGHBOURHOOD,
+    PERCENTILE,
+    PERCENTILE_TO_RMS,
+    off_neighbours,
+)
+
+FAR = 8.0  # spreads: of Gaussian distances one in 10^15 is farther
+_LEAST_LINES = 16  # lines from which their steps have a spread
+_ROUNDING = 1e-9  # of the rms height
+
+
+def standing_out(z: Array, pixel: tuple[float, float]) -> tuple[str, ...]:
+    """Return a note on the points, and one on the lines along each axis, that stand out; empty for none."""
+    points, notes = spikes(z, pixel), []
+    if points:
+        notes.append(
+            f"{points} points stand out by more than {FAR:g} local spreads: outliers = {FAR:g} (--outliers "
+            f"{FAR:g}) removes them"
+        )
+    for axis, values in (("x", z.T), ("y", z)):
+        if lines := scars(values):
+            notes.append(
+                f"{lines} of {len(values)} lines along {axis} stand out as a whole (scars of a scan): level "
+                "the map line by line, or measure again; contact would run along them"
+            )
+    return tuple(notes)
+
+
+def spikes(z: Array, pixel: tuple[float, float]) -> int:
+    """Return the number of points farther from their neighbours than `FAR` spreads, as `prepare` has them."""
+    known = np.isfinite(z)
+    if min(z.shape) < NEIGHBOURHOOD or not known.any():
+        return 0
+    away = off_neighbours(fill(z, pixel) if not known.all() else z, False)
+    typical = max(MAD_TO_RMS * float(np.median(away[known])), _ROUNDING * float(z[known].std()))
+    i, j = np.nonzero(known & (away > FAR * typical))
+    reach = NEIGHBOURHOOD // 2
+    padded = np.pad(away, reach, mode="edge")
+    around = [padded[i + k, j + m] for k in range(NEIGHBOURHOOD) for m in range(NEIGHBOURHOOD)]
+    local = np.percentile(around, PERCENTILE, axis=0) / PERCENTILE_TO_RMS if i.size else np.zeros(0)
+    return int(np.count_nonzero(away[i, j] > FAR * local))
+
+
+def scars(z: Array) -> int:
+    """Return the number of rows that lie above, or below, both of their neighbours by `FAR` spreads.
+
+    A step is the median, over a row, of the distance from the row before; steps' spread is that of all rows.
+    """
+    if len(z) < _LEAST_LINES:
+        return 0
+    with np.errstate(invalid="ignore"):
+        steps = np.nanmedian(np.diff(z, axis=0), axis=1)
+    steps = np.nan_to_num(steps - np.nanmedian(steps))
+    spread = max(MAD_TO_RMS * float(np.median(np.abs(steps))), _ROUNDING * float(np.nanstd(z)))
+    up, down = steps[:-1], -steps[1:]
+    out = (up * down > 0) & (np.minimum(np.abs(up), np.abs(down)) > FAR * spread)
+    return int(np.count_nonzero(out))

@@ -1,0 +1,63 @@
+"""Lines of a text file: its encoding, spellings of missing points that begin like comments, Wyko's blocks."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+NOT_MEASURED = (
+    "nan", "bad", "na", "n/a", "inf", "-inf", "null", "none", "---", "--", "***", "**", "*", "-",
+)  # fmt: skip
+_PIECE = 2**20  # characters read at a time
+# Windows prints 1.#QNAN and -1.#IND00, spreadsheets #N/A, #DIV/0! and #WERT!, newer compilers -nan(ind)
+_HASHED = r"[-+]?\d[.,]#[a-z][-+\w]*|#¡?(?:div/0!|n/[ad]|nv|[^\W\d_]+[!?])|[-+]?nan\(\w*\)"
+_MISSING = re.compile(rf"(?<![^\s,;])(?:{_HASHED})(?![^\s,;])", re.IGNORECASE)
+WYKO = "Wyko ASCII Data File Format"
+_WYKO_BLOCK = re.compile(r"(?!bad\b)([a-z]\w*)\s+\d+\s+\d+\b", re.IGNORECASE)
+WYKO_HEIGHTS = ("RAW_DATA", "OPD", "Raw", "SAMPLE_DATA")  # others are intensities and processed arrays
+
+
+def encoding_of(path: Path) -> str:
+    """UTF-8 or UTF-16 by the file's mark, UTF-8 if it is valid, else Latin-1."""
+    with path.open("rb") as file:
+        if file.read(2) in (b"\xff\xfe", b"\xfe\xff"):
+            return "utf-16"
+    try:
+        with path.open(encoding="utf-8-sig") as text:
+            while text.read(_PIECE):
+                pass
+    except UnicodeDecodeError:
+        return "latin-1"
+    return "utf-8-sig"
+
+
+def lines_of(path: Path, encoding: str) -> Iterator[tuple[int, str]]:
+    """Number and text of each line, one at a time: a list takes several times what their numbers do."""
+    with path.open(encoding=encoding) as file:
+        lines = (
+            (number, _spelled(part.strip(" \xa0")))
+            for number, line in enumerate(file, 1)
+            for part in line.splitlines()
+        )
+        first = next(lines, (1, ""))
+        yield first
+        yield from _heights(lines) if first[1].startswith(WYKO) else lines
+
+
+def _spelled(line: str) -> str:
+    """The line with its missing points spelled nan; one of nothing else is a comment."""
+    if "#" not in line and "(" not in line:
+        return line
+    return line if _MISSING.fullmatch(line) else _MISSING.sub("nan", line)
+
+
+def _heights(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, str]]:
+    """Wyko's text without the arrays that are no heights: a block's line states its name, type and length."""
+    keeps = True
+    for number, line in lines:
+        if block := _WYKO_BLOCK.match(line):
+            is_array = not line[block.end() :].strip()
+            keeps = not is_array or block.group(1) in WYKO_HEIGHTS
+        if keeps:
+            yield number, line
