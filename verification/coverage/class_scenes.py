@@ -182,9 +182,10 @@ def _ridges(draw: _Draw) -> rf.Surface:
 
 def _both_rough(draw: _Draw) -> rf.Surface:
     """Roughness of Eq. (9), self-affine roughness or grooves on either body."""
-    laws = [_isotropic, _self_affine, _oblique, _grooves]
+    laws: list[Kind] = [_isotropic, _self_affine, _oblique, _grooves]
     lower, upper = (laws[k] for k in draw.rng.permutation(len(laws))[:2])
-    surface, other = lower(draw), upper(draw)
+    surface: rf.Surface = lower(draw)
+    other: rf.Surface = upper(draw)
     height = draw.log(0.2, 1.0)
     if isinstance(other, Wave):
         draw.other = replace(other, amplitude=height * RMS)

@@ -10,7 +10,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.accuracy import discretisation_error
-from refimpl.accuracy.discretisation_error import SHEAR_BOUNDS, SLOPE_SHARE, estimates
+from refimpl.accuracy.discretisation_error import BULK_SCATTER, SHEAR_BOUNDS, estimates
 from refimpl.accuracy.iteration_error import active_set_parts, iteration_parts
 from refimpl.accuracy.refinement import FIRST_GRIDS, relative_bound, tolerance_for, uncertainty
 from refimpl.accuracy.scatter import edge_scatter
@@ -54,7 +54,7 @@ def test_slopes_that_change_within_elements_leave_mu_open() -> None:
     mu = estimates(found)["friction_coefficient"]
     assert mu.error_bound(0.25) > 0.15
     alone = estimates(found[-1:])["friction_coefficient"]
-    assert alone.half_width > 12.7 * SLOPE_SHARE * 0.02  # Student's t with one degree of freedom
+    assert alone.half_width > 12.7 * BULK_SCATTER[1] * 0.02  # Student's t with one degree of freedom
     settling = [sloped(0.1 + u, M, u) for u, M in ((0.08, 32), (0.02, 64), (0.0003, 512))]
     assert estimates(settling)["friction_coefficient"].error_bound(0.1003) < 2e-3
 
