@@ -64,6 +64,7 @@ BULK_SCATTER, BULK_FREEDOM = table("bulk_scatter"), constant("bulk_freedom")
 BINORMAL_SCATTER, BINORMAL_FREEDOM = table("binormal_scatter"), constant("binormal_freedom")
 APPROACH_SCATTER = table("approach_scatter")  # units: `approach_sizes`
 APPROACH_FREEDOM = constant("approach_freedom")
+HIDDEN_GAP = constant("hidden_gap_bound")  # 95 %: approach by gaps that no element shows, over `hidden_gap`
 FORCE = Prior(constant("force_scatter"), constant("force_freedom"))  # unit: value (edge / area)^1.5
 SHEAR_BOUNDS = {
     name: constant(f"shear_bound_{name}") for name in ("approach", "normal_force", "max_pressure")
@@ -85,11 +86,10 @@ def rest_sizes(results: Sequence[GridFeatures]) -> Array:
 
 
 def approach_sizes(results: Sequence[GridFeatures]) -> Array:
-    """Return units of the scatter of an approach under a load on each grid (m), shape (6, grids).
+    """Return units of the scatter of an approach under a load on each grid (m), shape (5, grids).
 
     The contact's edge, as peaks err; the gap's; a free border, where the pressure of a contact that is cut
-    off is singular as under a punch (order h); differences that slopes are (order h^2); gaps that no element
-    shows; first contact.
+    off is singular as under a punch (order h); differences that slopes are (order h^2); first contact.
     """
     last = results[-1]
     unit = max(abs(last.numbers["approach"]), last.depth)
@@ -100,7 +100,6 @@ def approach_sizes(results: Sequence[GridFeatures]) -> Array:
             [gap_scatter(result) for result in results],
             [result.border_fraction * result.depth for result in results],
             [result.slope_displacement_error for result in results],
-            [result.hidden_gap for result in results],
             [first_contact_error(result) for result in results],
         ]
     )
@@ -191,7 +190,8 @@ def _estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
     last = grids.results[-1]
     if last.loaded:
         by_shear = SHEAR_BOUNDS["approach"] * last.shear_by_edge * last.depth
-        return found | {"approach": _approach(grids).widened(by_shear)}
+        by_gaps = HIDDEN_GAP * last.hidden_gap
+        return found | {"approach": _approach(grids).widened(math.hypot(by_shear, by_gaps))}
     bounds = first_contact_bounds(last)
     widened = {name: estimate.widened(bounds.get(name, 0.0)) for name, estimate in found.items()}
     widened["normal_force"] = _force(grids)

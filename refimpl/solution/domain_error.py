@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from refimpl.accuracy.iteration_error import AREAS, Uncertainty, reported_numbers
+from refimpl.accuracy.iteration_error import Uncertainty, reported_numbers
 from refimpl.model.certificate import State
 from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem
@@ -52,6 +52,6 @@ def _by_area(problem: Problem, state: State, share: float) -> dict[str, float]:
     per_area = friction_per_area(problem.friction, state.forces.normal)
     mu = state.friction_coefficient
     of_mu = min(per_area * state.contact_area / mu, 1.0) if mu > 0 else 0.0
-    moved = dict.fromkeys((*AREAS, "plastic_area", "approach"), share)
+    moved = dict.fromkeys(("contact_area", "plastic_area", "approach"), share)
     moved |= dict.fromkeys(("friction_coefficient", "friction_force"), of_mu * share)
     return moved | {"max_pressure": 2 * share}
