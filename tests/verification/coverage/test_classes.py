@@ -91,11 +91,10 @@ def test_a_coarse_grid_that_is_right_by_chance_is_not_the_cheapest(monkeypatch: 
             friction_coefficient=1.0,
             contact_area_corrected=2e-6,
             cost=Made(point_logs=float(grid**2)),
-            problem=Made(grid=Made(shape=(48, grid))),
             status=rf.Status.CONVERGED,
             converged=True,
         )
-        found.details = Made(features=found)
+        found.details = Made(features=found, problem=Made(grid=Made(shape=(48, grid))))
         return found
 
     monkeypatch.setattr(class_costs, "SIZES", [32, 64, 96, 128])
