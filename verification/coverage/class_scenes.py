@@ -39,7 +39,7 @@ class _Draw(Dice):
         self.pressed_share = 0.05, 0.6  # range of the load over that of full contact
         self.radii = 0.1, 0.3  # range of Hertz's contact radius over the shorter side
         self.slope: float | None = None  # rms gradient that sets the load, in place of the surface's
-        self.other: rf.Surface = rf.Flat()  # roughness of the upper body
+        self.other: rf.Surface | None = None  # roughness of the upper body
         self.known: tuple[float, float] | None = None  # load (N) and contact radius (m), in closed form
 
     def elements(self, low: float, high: float) -> float:
@@ -315,7 +315,7 @@ def scene(kind: str, seed: int, classes: Mapping[str, Kind] = CLASSES) -> rf.Sce
     draw = _Draw(kind, seed)
     surface = classes[kind](draw)
     probe = rf.Scene(
-        upper=rf.Body(draw.upper, draw.other),
+        upper=rf.Body(draw.upper, draw.other or rf.Flat()),
         lower=rf.Body(draw.lower, surface),
         friction=rf.Friction(),
         load=1.0,
@@ -326,7 +326,7 @@ def scene(kind: str, seed: int, classes: Mapping[str, Kind] = CLASSES) -> rf.Sce
         load, a = draw.known
         return _with_friction(draw, kind, probe, load, load / (math.pi * a**2))
     grid = probe.grid(128)
-    z = surface.sample(grid) - draw.other.sample(grid)
+    z = surface.sample(grid) - (draw.other.sample(grid) if draw.other else 0.0)
     slope = draw.slope or math.sqrt(sum(float(np.mean(g**2)) for g in grid.gradient(z)))
     height = float(np.std(z))
     pressed = 0.5 * draw.modulus * slope  # in contact, by Bush et al. 1975
@@ -336,7 +336,8 @@ def scene(kind: str, seed: int, classes: Mapping[str, Kind] = CLASSES) -> rf.Sce
     a = min(draw.size) * draw.log(*draw.radii)
     height = height or a / 1500  # a ball on a flat has 50 to 1000 times the contact's radius
     ball = Ball(draw.modulus, a**2 / (height * draw.log(1.5, 30)), a)
-    under = replace(probe, upper=rf.Body(draw.upper, rf.Sphere(ball.R) + draw.other))
+    shape: rf.Surface = rf.Sphere(ball.R)
+    under = replace(probe, upper=rf.Body(draw.upper, shape + draw.other if draw.other else shape))
     return _with_friction(draw, kind, under, ball.load, max(ball.pressure, pressed))
 
 

@@ -94,7 +94,7 @@ def summary(rows: Iterable[dict[str, Any]]) -> dict[str, Any]:
     rows = list(rows)
     held = sum(row["error"] <= row["bar"] for row in rows)
     short = [row for row in rows if row["bar"] <= LARGEST_SHARE]
-    finite = [row["bar"] / row["error"] for row in rows if row["error"] > 0]
+    finite = [row["bar"] / row["error"] for row in rows if row["error"] > 0 and math.isfinite(row["bar"])]
     missed = [row["error"] / row["bar"] for row in rows if row["error"] > row["bar"] > 0]
     bounded = [row for row in rows if math.isfinite(row["bar"])]
     off = sum(row["error"] * (1 if row["too_large"] else -1) for row in bounded)
