@@ -53,6 +53,7 @@ from refimpl.grid import Array
 
 _DIVERGED = 1e100  # in SI units; squares are still doubles
 
+_UNMEASURED = 4.5  # elements of a contact
 EXCESS_SPREAD = constant("excess_spread")  # standard deviation of all faces' excess together, over it
 AREA = Prior(1.0, constant("area_freedom"))  # unit: `area_scatter`
 # c0, s_c: the parabola of a pressure peaks too high, over its curvature drop
@@ -266,7 +267,12 @@ def discretisation(results: Sequence[GridFeatures]) -> dict[str, dict[str, float
 
 
 def _area(grids: _Grids) -> Estimate:
-    """Contact area: the excess along the edge is a regressor, and the scatter is that of a count."""
+    """Contact area: the excess along the edge is a regressor, and the scatter is that of a count.
+
+    Of a contact of four elements or fewer no face tells how much of them is in contact: its bar is all of it.
+    """
     bias = Bias(grids.each(lambda result: result.excess), 1.0, EXCESS_SPREAD)
     scatter = grids.each(area_scatter)[None]
-    return grids.smooth(grids.found("contact_area"), AREA.weight, np.ones(1), scatter, bias)
+    found = grids.smooth(grids.found("contact_area"), AREA.weight, np.ones(1), scatter, bias)
+    area, dA = grids.finest("contact_area"), grids.results[-1].grid.element_area
+    return found.widened(area) if area < _UNMEASURED * dA else found

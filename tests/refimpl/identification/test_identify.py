@@ -324,11 +324,11 @@ def test_loads_in_another_unit_do_not_belong_to_the_scene(smooth: rf.Scene, fact
 
 
 def test_a_load_that_the_grid_does_not_resolve_is_named(smooth: rf.Scene) -> None:
-    """40 N given as 0.004: a contact of few elements has hardly any weight."""
+    """40 N given as 0.04: a contact of few elements has hardly any weight."""
     rows = _rows(smooth, 0.01)
-    rows[3] = replace(rows[3], load=1e-4 * rows[3].load)
+    rows[3] = replace(rows[3], load=1e-3 * rows[3].load)
     found = identify(_without_friction(smooth), rows, M, design=False)
-    assert any("exceeds half of mu in row 4 (0.004 N)" in text for text in found.warnings)
+    assert any("exceeds half of mu in row 4 (0.04 N)" in text for text in found.warnings)
     assert found.values["tau"].low < 15e6 < found.values["tau"].high
 
 
