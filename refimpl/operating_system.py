@@ -6,6 +6,7 @@ Python that lacks them.
 
 from __future__ import annotations
 
+import math
 import os
 import platform
 import re
@@ -129,6 +130,24 @@ def processor_time(seconds: float, failure: Exception) -> Iterator[None]:
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0.0)
         signal.signal(signal.SIGPROF, before)
+
+
+def limit_process(seconds: float, memory: int) -> None:
+    """Let the system end this process after so much more processor time, and refuse it so many bytes more.
+
+    On Windows it has no such limits; a lower one that is there stays.
+    """
+    with suppress(ImportError, OSError, ValueError):
+        import resource
+
+        used = resource.getrusage(resource.RUSAGE_SELF)
+        limits = {
+            resource.RLIMIT_CPU: math.ceil(used.ru_utime + used.ru_stime + seconds),
+            resource.RLIMIT_AS: psutil.Process().memory_info().vms + memory,
+        }
+        for limit, most in limits.items():
+            hard = resource.getrlimit(limit)[1]
+            resource.setrlimit(limit, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
 
 
 @contextmanager

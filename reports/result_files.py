@@ -36,7 +36,24 @@ def read_result(path: Path) -> Any:
         raise ValueError(f"more than {MOST_BYTES} bytes")
     if content.startswith(_MAGIC):
         content = _decompressed(content)
-    return json.loads(content.decode(), parse_constant=_refuse)
+    return parsed(content.decode())
+
+
+def parsed(text: str) -> Any:
+    """Return the document of a JSON text from anywhere.
+
+    Raises ValueError for what is not JSON, NaN and infinity included, and for an object with a key twice.
+    """
+    return json.loads(text, parse_constant=_refuse, object_pairs_hook=_once)
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        names = [name for name, _ in pairs]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"the key {twice[:40]!r} is there twice")
+    return found
 
 
 def _decompressed(content: bytes) -> bytes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
@@ -51,6 +52,14 @@ def _one_of(*values: str) -> Kind:
     return lambda value: isinstance(value, str) and value in values
 
 
+def _command(value: object) -> bool:
+    """True if the value is a text that a shell would split into words."""
+    try:
+        return isinstance(value, str) and bool(shlex.split(value))
+    except ValueError:  # an open quote
+        return False
+
+
 def _labels(value: object) -> bool:
     """True if the value is a table of texts, numbers and None."""
     return isinstance(value, Mapping) and all(
@@ -74,7 +83,7 @@ ERRATUM: Mapping[str, Kind] = {
     "measure": _text, "printed_error": _or_none(_number), "corrected_error": _or_none(_number),
 }  # fmt: skip
 PROVENANCE: Mapping[str, Kind] = {
-    "command": _text, "date": _text, "commit": _or_none(_text), "dirty": _or_none(_flag),
+    "command": _command, "date": _text, "commit": _or_none(_text), "dirty": _or_none(_flag),
     "versions": _labels, "machine": _labels,
 }  # fmt: skip
 SOLVER: Mapping[str, Kind] = {"name": _text}

@@ -6,8 +6,6 @@ import shlex
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from reports.results import ResultFileError
-
 ELSEWHERE = ("--only", "--tier", "--jobs", "--json")
 """Options of `verify` that are no part of which solver is run, and how; each has a value."""
 
@@ -24,10 +22,7 @@ def rerun(command: str, case_id: str) -> str:
     >>> rerun("rough-friction verify --solver a:b --only 'x/*' --able load --json y", "solver/pins")
     'rough-friction verify --solver a:b --able load --only solver/pins'
     """
-    try:
-        words = iter(shlex.split(command)[1:])
-    except ValueError as unbalanced:
-        raise ResultFileError(f"the command {command!r}: {unbalanced}") from unbalanced
+    words = iter(shlex.split(command)[1:])
     return shlex.join(["rough-friction", *_kept(words), "--only", case_id])
 
 

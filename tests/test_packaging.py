@@ -125,3 +125,19 @@ def test_without_any_extra_it_solves_plots_and_writes_csv(tmp_path: Path) -> Non
 
 def test_the_wheels_check_can_be_run() -> None:
     assert os.access(ROOT / ".ci/package", os.X_OK)
+
+
+@pytest.mark.parametrize("name", ["verification.py", "verification/__init__.py"])
+def test_a_module_that_hides_the_package_is_named_in_one_line(name: str, tmp_path: Path) -> None:
+    """By the console script's entry, and by `python -m`, which looks in the working directory first."""
+    (tmp_path / name).parent.mkdir(exist_ok=True)
+    (tmp_path / name).write_text("raise RuntimeError('imported')\n")
+    path = os.pathsep.join((str(tmp_path), str(ROOT)))
+    entry = "import rough_friction; raise SystemExit(rough_friction.run())"
+    for how in (["-c", entry], ["-m", "rough_friction"]):
+        done = subprocess.run(
+            [sys.executable, *how, "--help"], cwd=tmp_path, env=os.environ | {"PYTHONPATH": path},
+            capture_output=True, text=True,
+        )  # fmt: skip
+        assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+        assert f"{tmp_path / name} hides" in done.stderr

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from refimpl.driver.limits import Limits
 from refimpl.driver.on_grid import Progress, initial_guess, solve_on_grid
 from refimpl.driver.options import Options
@@ -14,6 +16,7 @@ from refimpl.scene.scene import Scene
 from refimpl.solution.solution import Solution, assemble
 
 
+@np.errstate(under="ignore")  # whatever the caller's settings
 def solve(
     scene: Scene,
     grid: int | tuple[int, int] | None = None,

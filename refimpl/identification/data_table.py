@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import itertools
 import math
+import re
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -21,6 +22,8 @@ MOST_FRICTION = 50.0  # mu of every row: rubber under its own weight has 10
 MIXED_LOADS = 300.0  # ratio of neighbouring loads, the same: no loading series leaves such a gap
 _FRICTION = {"mu": "u_mu", "friction_force": "u_friction_force"}
 _FRAME, _FILES = ("sliding_direction", "sliding_offset"), ("upper_file", "lower_file")
+_MARKED = re.compile(r"[+-]?\d*[.,][\d.,]*(e[+-]?\d+)?", re.I)  # number with a comma or a point
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}([.,]\d{3})+")
 _UNITS = {
     "load": "N",
     "friction_force": "N",
@@ -73,9 +76,9 @@ def read_rows(path: str | Path) -> tuple[Row, ...]:
 
     SI units; ``u`` is a standard uncertainty (68 %). Optional columns: ``sliding_direction`` (rad),
     ``sliding_offset`` (m), ``upper_file`` and ``lower_file`` (relative to the table). Semicolons or tabs may
-    separate the columns; decimal commas are read then. Lines that begin with "#" are comments. An unnamed
-    first column that counts the rows, as R and pandas write it, is dropped with a warning. Raises
-    `InputError`, which names the line, for anything else.
+    separate the columns; decimal commas are read then, unless all of them may separate thousands. Lines that
+    begin with "#" are comments. An unnamed first column that counts the rows, as R and pandas write it, is
+    dropped with a warning. Raises `InputError`, which names the line, for anything else.
     """
     path = Path(path)
     require_regular("data", path, MAX_BYTES)
@@ -104,6 +107,7 @@ def read_rows(path: str | Path) -> tuple[Row, ...]:
     header = cells[0][1]
     quantity = _check_header(header)
     decimal = "." if separator == "," else ","
+    _refuse_thousands(cells[1:])
     rows = tuple(_row(header, quantity, k, line, path.parent, decimal) for k, line in cells[1:])
     return check_rows(rows)
 
@@ -116,6 +120,21 @@ def _without_index(cells: list[tuple[int, list[str]]]) -> list[tuple[int, list[s
     said = "data: the unnamed first column, which counts the rows, was dropped"
     warnings.warn(said, UserWarning, stacklevel=3)
     return [(k, row[1:]) for k, row in cells]
+
+
+def _refuse_thousands(cells: Sequence[tuple[int, Sequence[str]]]) -> None:
+    """Raise `InputError` for 1,320 where no comma of the table is surely a decimal one, as of 1,32 or 0,320.
+
+    The same holds for points, but where the table has no comma they are decimal ones.
+    """
+    numbers = [(k, cell) for k, row in cells for cell in row if _MARKED.fullmatch(cell)]
+    commas = [(k, cell) for k, cell in numbers if "," in cell]
+    points = [(k, cell) for k, cell in numbers if "." in cell]
+    for found in (commas, points if commas else []):
+        if found and all(_THOUSANDS.fullmatch(cell) for _, cell in found):
+            k, cell = found[0]
+            allowed = "a decimal point, and no mark between thousands: this one may be either"
+            raise InputError(f"data line {k}", cell, allowed)
 
 
 def _check_header(header: Sequence[str]) -> str:
@@ -164,7 +183,7 @@ def _number(k: int, name: str, text: str) -> float:
         number = float(text)
     except ValueError:
         number = math.nan
-    if not math.isfinite(number) or "_" in text:
+    if not math.isfinite(number) or "_" in text or not text.isascii():
         raise InputError(f"data line {k}: {name}", text, f"a finite number{unit}")
     return number
 

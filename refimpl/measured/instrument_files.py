@@ -33,7 +33,7 @@ from refimpl.measured.file_kinds import kind_of
 from refimpl.measured.point_tables import points_map
 from refimpl.measured.reading import ALONG_Y, ARRAY, IMAGE, UNITS, Overrides, RawHeights, checked
 from refimpl.measured.text_lines import WYKO
-from refimpl.measured.workarounds import NMS_UNIT, Source, rewritten
+from refimpl.measured.workarounds import NMS_UNIT, Source, refuse_changed, rewritten
 
 T = TypeVar("T")
 
@@ -63,6 +63,7 @@ def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
     failures = []
     for name in formats:
         try:
+            refuse_changed(path, name)
             return read_as(library, path, name, given, *rewritten(path, name))
         except InputError:
             raise

@@ -1,4 +1,4 @@
-"""The process that reads binary files from anywhere: a parser that crashes or never ends takes none along.
+"""The process that reads binary and large files: a parser that crashes or never ends takes none along.
 
 One for all files of this process, a fresh interpreter that is started with the first, in which parsers stay
 imported. It ends with its standard input.
@@ -20,10 +20,13 @@ from pathlib import Path
 from typing import TypeVar
 
 from refimpl.errors import InputError
+from refimpl.operating_system import limit_process
 
 T = TypeVar("T")
 
-SECONDS = 240.0  # for a file, on a busy machine: 16 million points take three of processor time
+SECONDS = 240.0  # for a file, on a busy machine
+CPU_SECONDS, CPU_PER_BYTE = 8.0, 80e-9  # of processor time: text takes 45e-9 a byte, instruments' files less
+MEMORY, MEMORY_PER_BYTE = 2**30, 8  # bytes: text takes 5, 16 million points from a packed file half of 2**30
 _CODE = "from refimpl.measured.reader_process import serve; serve()"
 _LOCK = threading.Lock()
 _started: dict[int, subprocess.Popen[bytes]] = {}
@@ -33,14 +36,15 @@ _started: dict[int, subprocess.Popen[bytes]] = {}
 def read_elsewhere(path: Path, load: Callable[[], T]) -> T:
     """Return what ``load``, which can be pickled, returns in the reader; raises `InputError` where it does.
 
-    So it does where the reader crashes or takes more than `SECONDS`; the next file gets a new one.
+    So it does where the reader crashes or takes more than its time or memory, which follow from the file's
+    size; the next file gets a new one.
     """
     with _LOCK:
         reader = _reader()
         assert reader.stdin is not None  # both are pipes
         assert reader.stdout is not None
         try:
-            pickle.dump((os.getcwd(), SECONDS, load), reader.stdin)
+            pickle.dump((os.getcwd(), SECONDS, os.path.getsize(path), load), reader.stdin)
             reader.stdin.flush()
             found = pickle.load(reader.stdout)
         except (EOFError, OSError, pickle.UnpicklingError):
@@ -93,10 +97,11 @@ def serve() -> None:
         os.dup2(nowhere.fileno(), 1)
         while True:
             try:
-                folder, seconds, load = pickle.load(sys.stdin.buffer)
+                folder, seconds, size, load = pickle.load(sys.stdin.buffer)
             except EOFError:
                 return
             os.chdir(folder)
+            limit_process(CPU_SECONDS + CPU_PER_BYTE * size, MEMORY + MEMORY_PER_BYTE * size)
             faulthandler.dump_traceback_later(seconds, exit=True, file=nowhere)
             try:
                 found = load()

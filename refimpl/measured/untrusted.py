@@ -18,6 +18,7 @@ from refimpl.measured.reader_process import read_elsewhere
 T = TypeVar("T")
 
 _HEAD = 4096  # bytes that tell a binary file
+_SMALL = 4_000_000  # bytes of text that take a second and 80 MB, whatever they are
 _NUMPY = b"\x93NUMPY"  # read by NumPy in Python, which does not crash
 
 
@@ -25,10 +26,11 @@ def read_untrusted(path: Path, load: Callable[[], T]) -> T:
     """Return what ``load`` returns; raise `InputError` for whatever else becomes of the file.
 
     Parsers of other people raise errors of any kind on bytes that are not what they claim to be, and some
-    crash the process: binary files are read in another one (`reader_process`), to which ``load`` is pickled.
+    crash the process or take all its memory: binary and large files are read in another one
+    (`reader_process`), to which ``load`` is pickled.
     """
     reading = partial(_read_or_refuse, path, load)
-    return read_elsewhere(path, reading) if _is_binary(path) else reading()
+    return read_elsewhere(path, reading) if _is_risky(path) else reading()
 
 
 def _read_or_refuse(path: Path, load: Callable[[], T]) -> T:
@@ -42,12 +44,12 @@ def _read_or_refuse(path: Path, load: Callable[[], T]) -> T:
         raise InputError("path", str(path), f"a file that can be read ({found})") from error
 
 
-def _is_binary(path: Path) -> bool:
+def _is_risky(path: Path) -> bool:
     if not os.path.isfile(path):  # no error for long names, no waiting for a pipe
         return False
     with suppress(OSError), path.open("rb") as file:  # an error is for `_read_or_refuse`
         head = file.read(_HEAD)
-        return b"\0" in head and not head.startswith(_NUMPY)
+        return (b"\0" in head or os.path.getsize(path) > _SMALL) and not head.startswith(_NUMPY)
     return False
 
 

@@ -5,11 +5,13 @@ As of version 1.27.1: X3P of other writers than its own, compressed SUR, the lat
 
 from __future__ import annotations
 
+import hashlib
 import io
 import re
 import struct
 import zipfile
 import zlib
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +25,10 @@ Source = str | io.BytesIO
 X3P_REVISION = "ISO5436 - 2000"  # the one text that the library takes
 _X3P_DATA = "bindata/data.bin"
 NMS_UNIT = 1e-6  # its spacing is in nm (surfalize reads it so); the library takes it for mm
+_CHECKSUM = (
+    r"<(?:\w+:)?(?:PointData|ValidPoints)Link>\s*([^<]*?)\s*</[^>]*>\s*"
+    r"<(?:\w+:)?MD5Checksum(?:PointData|ValidPoints)>\s*([0-9A-Fa-f]{32})\s*<"
+)
 _SUR_HEADER, _SUR_COMMENT = 512, "<hh"
 _SUR_LENGTHS_AT = 314  # bytes: lengths of comment and private zone
 
@@ -86,6 +92,24 @@ def _linked(text: bytes) -> bytes:
     text = re.sub(rb"<DataList>.*</DataList>", link, text, flags=re.DOTALL)
     kind = re.compile(rb"(<CZ>.*?<DataType>)\s*\w\s*(</DataType>)", re.DOTALL)
     return kind.sub(rb"\1D\2", text)
+
+
+def refuse_changed(path: Path, name: str) -> None:
+    """Raise `InputError` for data of an X3P file (ISO 25178-72) whose checksum in main.xml is another one."""
+    if name != "x3p":
+        return
+    with zipfile.ZipFile(path) as archive:
+        members = {member.replace("\\", "/"): member for member in archive.namelist()}
+        main = next((m for m in sorted(members, key=len) if m.rpartition("/")[2].lower() == "main.xml"), None)
+        text = archive.read(members[main]).decode("latin-1") if main else ""
+        for link, stated in re.findall(_CHECKSUM, text):
+            member = members.get(f"{main}"[: -len("main.xml")] + link.replace("\\", "/"))
+            if member is None:
+                continue
+            with archive.open(member) as data:
+                found = hashlib.file_digest(data, partial(hashlib.md5, usedforsecurity=False)).hexdigest()  # type: ignore[arg-type]  # a zip's member reads like a file
+            if found != stated.lower():
+                raise InputError("path", str(path), f"data of the checksum that main.xml states ({link})")
 
 
 def _sur(raw: bytes, path: Path) -> tuple[Source, tuple[str, ...]]:

@@ -114,15 +114,16 @@ def both_sides(
 ) -> tuple[tuple[float, _Found], tuple[float, _Found]]:
     """Return the values a relative step below and above a parameter, each with what is made of it.
 
-    Where one side is refused the value itself takes its place. Raises `InputError` where both are.
+    Where one side is refused the value itself takes its place. Raises `InputError` where both are, and where
+    the values are one and the same double.
     """
     found: dict[float, _Found] = {}
     for at in (value * (1 - step), value * (1 + step)):
         with suppress(InputError):
             found[at] = make(at)
-    if not found:
-        raise InputError(name, value, f"a value with another allowed one {step:.2g} of it below or above")
     if len(found) == 1:
         found[value] = make(value)
+    if len(found) < 2:
+        raise InputError(name, value, f"a value with another allowed one {step:.2g} of it below or above")
     low, high = sorted(found)
     return (low, found[low]), (high, found[high])

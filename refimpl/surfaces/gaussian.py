@@ -85,6 +85,7 @@ class GaussianRoughness(Surface):
         factor = math.sqrt(math.log(10.0) / -math.log(self.acf_level))
         return Lay(lx * factor, ly * factor, self.lay)
 
+    @np.errstate(under="ignore")  # far lags end as zeros
     def autocorrelation(self, x: Array, y: Array | float = 0.0) -> Array:
         """Eq. (9) at lags (x, y) (m): ``rms^2 exp(-2.3 (x'^2 / lx^2 + y'^2 / ly^2))`` (m^2)."""
         a, s, b = self.ellipse.sheared

@@ -89,6 +89,7 @@ class Surface(ABC):
             warnings.warn(caution, SurfaceWarning, stacklevel=2)
         return z
 
+    @np.errstate(under="ignore")  # tails of exponentials end as zeros, whatever the caller's settings
     def sample(self, grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> Array:
         """Return the `heights` without a warning: Python's warning filters are shared by all threads."""
         ox, oy = offset

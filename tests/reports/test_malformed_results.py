@@ -182,3 +182,10 @@ IDS = st.text(st.characters(codec="utf-8", exclude_categories=["Z", "C"]), min_s
 @given(LOOK_ALIKES | IDS, LOOK_ALIKES | IDS)
 def test_different_ids_have_different_anchors(one: str, other: str) -> None:
     assert (anchor(one) == anchor(other)) == (one == other)
+
+
+def test_a_command_of_an_open_quote_is_refused_by_its_own_option(tmp_path: Path, capfd: Capture) -> None:
+    alien = replaced(WHOLE, ("provenance", "command"), "verify 'x")
+    (tmp_path / "r.json").write_text(json.dumps(alien | {"solver": {"name": "mine"}}))
+    assert main(["report", "--results", str(tmp_path / "r.json"), "--output", str(tmp_path / "out")]) == 2
+    assert "--results" in capfd.readouterr().err

@@ -14,7 +14,7 @@ from refimpl.errors import InputError, require_regular
 from refimpl.identification.forward import response_from_dict
 from refimpl.scene.scene import Scene
 from refimpl.scene.scene_file import scene_to_dict
-from reports.result_files import MOST_BYTES
+from reports.result_files import MOST_BYTES, parsed
 from verification.cli.output import files_of
 from verification.framework.files import to_json, write_text
 from verification.sweep.run import code_digest, file_digest
@@ -43,7 +43,7 @@ def _read(path: Path) -> dict[str, Any]:
     allowed = "a store of 'identify', or a new file"
     require_regular("store", path, MOST_BYTES)
     try:
-        document = json.loads(path.read_text(encoding="utf-8"))
+        document = parsed(path.read_text(encoding="utf-8"))
         if not isinstance(document, dict) or document.get("format") != FORMAT:
             raise InputError("store", str(path), f"{allowed}, of the format {FORMAT!r}")
         for key, row in document["solves"].items():

@@ -24,6 +24,7 @@ class Judged:
     results : verdicts, those of the first checks where the run was interrupted
     only : patterns that chose the checks
     of_convergence : whether limits and orders were judged instead of the suite
+    identity : version and checksum of the solver, as far as they are known
     left : processes that the solver left behind
     ended : the signal or Ctrl-C that interrupted the run, or None
     seconds : duration
@@ -33,6 +34,7 @@ class Judged:
     results: tuple[Result, ...]
     only: tuple[str, ...]
     of_convergence: bool
+    identity: Mapping[str, str | None]
     left: tuple[str, ...]
     ended: BaseException | None
     seconds: float
@@ -91,9 +93,9 @@ def likely_faults(results: Iterable[Result], most: int = 4) -> list[str]:
     return [words for *_, words in sorted(ranked, key=lambda each: each[:2], reverse=True)[:most]]
 
 
-def document(judged: Judged, solver: Mapping[str, str | None], stated: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the JSON document; ``solver`` has its name, version and checksum, ``stated`` its abilities."""
-    from verification.solver_suite import diagnosis, suite
+def document(judged: Judged, name: str, stated: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the JSON document; ``name`` is the solver's, ``stated`` its abilities."""
+    from verification.solver_suite import failures, suite
 
     return judged.run.document() | {
         "suite": suite.identity(),
@@ -102,7 +104,9 @@ def document(judged: Judged, solver: Mapping[str, str | None], stated: Mapping[s
         else 0,
         "interrupted": judged.ended is not None,
         "solver": {
-            **solver,
+            "name": name,
+            "version": judged.identity.get("version"),
+            "checksum": judged.identity.get("checksum"),
             "abilities": dict(stated) or None,
             "not_applicable": {r.id: r.note for r in judged.results if r.status == "unavailable"},
             "not_judged": judged.missing,
@@ -110,7 +114,7 @@ def document(judged: Judged, solver: Mapping[str, str | None], stated: Mapping[s
             "low_order": judged.low_order,
             "unseen_faults": judged.unseen,
             "likely_faults": likely_faults(judged.results),
-            "short_list": diagnosis.of_results(judged.results),
+            "failures_by_dimension": failures.by_dimension(judged.results),
         },
     }
 
@@ -128,7 +132,7 @@ def text(name: str, judged: Judged) -> str:
 
 def table(name: str, judged: Judged) -> str:
     """Verdicts, reasons of failure, what was not run and why, what no case looked for, and the counts."""
-    from verification.solver_suite.diagnosis import of_results
+    from verification.solver_suite import failures
 
     done = judged.run
     ran = [r for r in done.results if r.status != "unavailable"]
@@ -150,8 +154,9 @@ def table(name: str, judged: Judged) -> str:
         parts.append("\n".join(["not applicable, and not passed:", *lines]))
     if named := likely_faults(done.results):
         parts.append("faults by the share of their cases that fail:\n" + wrapped(", ".join(named), "  "))
-    if listed := of_results(done.results):
-        parts.append("problems of the covering design fail mostly where:\n  " + "\n  ".join(listed))
+    if listed := failures.in_words(failures.by_dimension(done.results)):
+        lines = [wrapped(each, "  ") for each in listed]
+        parts.append("\n".join(["failures by dimension of the designs:", *lines]))
     if judged.unseen:
         parts.append("looked for by none of these cases:\n" + wrapped(", ".join(judged.unseen), "  "))
     if judged.left:

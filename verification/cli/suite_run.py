@@ -104,7 +104,7 @@ def run(options: argparse.Namespace) -> int:
         return 0
     name, source, stated = _source(options)
     judged = _judged(options, checks, among, name, source)
-    document = suite_report.document(judged, identity_of(options), stated)
+    document = suite_report.document(judged, readable(name), stated)
     emit(document, options.json, suite_report.text(readable(name), judged))
     if options.table is not None:
         ours = suite_table.run_entry(document["solver"], suite.VERSION, judged.results)
@@ -132,6 +132,7 @@ def _judged(
     start, progress = time.perf_counter(), Progress(len(checks))
     results: list[Result] = []
     left: list[str] = []
+    identity: dict[str, str | None] = {}
     ended: Ended | KeyboardInterrupt | None = None
 
     def judged(result: Result) -> None:
@@ -146,6 +147,7 @@ def _judged(
                 timeout=_timeout(options),
                 name=name,
                 among=among,
+                identified=identity.update,
                 begin=lambda check: progress.show(f"running     {check.id}"),
                 tick=judged,
                 left=left.append,
@@ -154,23 +156,16 @@ def _judged(
         ended = end
     progress.close()
     seconds = time.perf_counter() - start
-    of_convergence = options.discretisation == "other"
-    return Judged(checks, tuple(results), tuple(options.only), of_convergence, tuple(left), ended, seconds)
-
-
-def identity_of(options: argparse.Namespace) -> dict[str, str | None]:
-    """Name, version and checksum of the solver."""
-    from verification.adapters import PUBLISHED
-    from verification.framework.case import readable
-    from verification.solver_suite import identity
-
-    if options.exec is not None:
-        found = identity.of_command(options.exec)
-    elif options.solver in PUBLISHED:
-        found = identity.of_published_code(PUBLISHED[options.solver])
-    else:
-        found = identity.of_function(options.solver)
-    return found | {"name": readable(options.solver or options.exec)}
+    return Judged(
+        checks,
+        tuple(results),
+        tuple(options.only),
+        options.discretisation == "other",
+        identity,
+        tuple(left),
+        ended,
+        seconds,
+    )
 
 
 def _timeout(options: argparse.Namespace) -> float:

@@ -8,26 +8,35 @@ import re
 import shlex
 import subprocess
 import sys
-from importlib.metadata import PackageNotFoundError, version
+from collections.abc import Callable
+from functools import partial
+from importlib.metadata import version
 from pathlib import Path
+from typing import TypeVar
 
 import refimpl
 
+T = TypeVar("T")
 ROOT = Path(__file__).resolve().parents[2]
 DISTRIBUTION = "rough-friction"
 PACKAGES = ("numpy", "scipy", "ducc0", "scikit-fem", "meshio", "mpmath", "python-flint", "SurfaceTopography",
             "matplotlib", "hypothesis", "pytest")  # fmt: skip
 
 
+def or_none(ask: Callable[[], T]) -> T | None:
+    """Return the answer, or None for whatever is raised: provenance never ends a run that is finished."""
+    try:
+        return ask()
+    except Exception:  # metadata of installed packages may hold anything
+        return None
+
+
 def versions() -> dict[str, str | None]:
-    """Version of Python, of this package and of each dependency; None for one that is not installed."""
+    """Version of Python, of this package and of each dependency; None for one that is not found."""
     found: dict[str, str | None] = {"python": platform.python_version()}
     found[DISTRIBUTION] = refimpl.__version__
     for package in PACKAGES:
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            found[package] = None
+        found[package] = or_none(partial(version, package))
     return found
 
 
@@ -60,7 +69,11 @@ def machine() -> dict[str, str | int | None]:
     """Processor model, cores this process may use, and platform."""
     from refimpl.operating_system import cores, processor_name  # here and not above: --help is quick
 
-    return {"cores": cores(), "processor": processor_name(), "platform": platform.platform()}
+    return {
+        "cores": or_none(cores),
+        "processor": or_none(processor_name),
+        "platform": or_none(platform.platform),
+    }
 
 
 def command() -> str:
@@ -95,7 +108,7 @@ def _git(root: Path, *arguments: str) -> str | None:
     """Output of a git command, which leaves no lock behind; None when there is no git or no repository."""
     try:
         asked = ["git", "--no-optional-locks", "-C", str(root), *arguments]
-        done = subprocess.run(asked, capture_output=True, encoding="utf-8", check=True)
+        done = subprocess.run(asked, capture_output=True, encoding="utf-8", errors="replace", check=True)
     except (OSError, subprocess.CalledProcessError):
         return None
     return done.stdout.strip()

@@ -23,7 +23,6 @@ from __future__ import annotations
 
 import json
 import os
-import shlex
 import shutil
 import subprocess
 import tempfile
@@ -37,6 +36,8 @@ import numpy as np
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
 from refimpl.operating_system import kill_group, words_of
+from reports.result_files import parsed
+from verification.solver_suite.identity import Identity, of_command
 from verification.solver_suite.process import exit_text
 from verification.solver_suite.protocol import NUMBERS, Abilities, Answer, BadAnswer, ContactProblem, Coupling
 
@@ -88,9 +89,9 @@ class Command:
         return self
 
     @property
-    def version(self) -> str:
-        """The command itself: what it is, only its author knows."""
-        return shlex.join(self.words)
+    def identity(self) -> Identity:
+        """Checksum of its files; their version only its author knows."""
+        return of_command(self.words)
 
     def __call__(self, problem: ContactProblem) -> Answer:
         """Run the program on one problem. Raises `BadAnswer` for all but a readable claim of success."""
@@ -169,7 +170,7 @@ def read_answer(directory: Path) -> Answer:
         found = "both pressure.csv and" if table.exists() else "neither pressure.csv nor"
         raise BadAnswer(f"exit status 0, but {found} answer.npz")
     try:
-        said = json.loads(header.read_text(encoding="utf-8")) if header.exists() else {"converged": True}
+        said = parsed(header.read_text(encoding="utf-8")) if header.exists() else {"converged": True}
         converged, numbers = said["converged"], {name: said.get(name) for name in NUMBERS}
         pressure = _read_table(table) if table.exists() else _read_archive(archive)
     except (ValueError, KeyError, TypeError, AttributeError, OSError, EOFError, zipfile.BadZipFile) as broken:
@@ -196,9 +197,11 @@ def _read_table(path: Path) -> Array:
 
 def _number(cell: str, line: int, place: int) -> float:
     try:
-        return float(cell)
+        if cell.isascii() and "_" not in cell:
+            return float(cell)
     except ValueError:
-        raise ValueError(f"line {line}, number {place}: {cell[:40]!r} is no number") from None
+        pass
+    raise ValueError(f"line {line}, number {place}: {cell[:40]!r} is no number")
 
 
 def _read_archive(path: Path) -> Array:

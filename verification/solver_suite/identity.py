@@ -1,63 +1,67 @@
-"""Identity of a solver under test: its name, version and a checksum, for tables that name it."""
+"""Identity of a solver under test: its version and a checksum, for tables that name it.
+
+That of a Python object is found in the process that runs it, where its package is imported in any case.
+"""
 
 from __future__ import annotations
 
 import hashlib
-import importlib
-import importlib.util
-import shlex
+import os
 import shutil
-from importlib.metadata import Distribution, PackageNotFoundError, distribution, packages_distributions
-from pathlib import Path
-from typing import Any
+import sys
+from collections.abc import Sequence
+from importlib.metadata import Distribution, distribution, packages_distributions
 
+from verification.framework.provenance import or_none
+
+Identity = dict[str, str | None]
 DIGITS = 16
 """Of a checksum's hexadecimal digits those that are shown."""
 
 
-def of_files(paths: list[Path]) -> str:
-    """First `DIGITS` of the SHA-256 over the contents of files, in their order."""
+def of_files(paths: Sequence[str]) -> str:
+    """Return the first `DIGITS` of the SHA-256 over the contents of files, in their order."""
     digest = hashlib.sha256()
     for path in paths:
-        digest.update(hashlib.sha256(path.read_bytes()).digest())
+        with open(path, "rb") as file:
+            digest.update(hashlib.file_digest(file, "sha256").digest())
     return digest.hexdigest()[:DIGITS]
 
 
-def of_command(command: str) -> dict[str, str | None]:
-    """Identity of a program: its own file and the files among its arguments, such as a script."""
-    words = shlex.split(command)
-    found = shutil.which(words[0])
-    paths = [Path(found)] if found else []
-    paths += [Path(word) for word in words[1:] if Path(word).is_file()]
-    return {"name": command, "version": None, "checksum": of_files(paths) if paths else None}
+def of_command(words: Sequence[str]) -> Identity:
+    """Return the identity of a program: its own file and the files among its arguments, such as a script."""
+    paths = [path for path in (shutil.which(words[0]), *words[1:]) if path and os.path.isfile(path)]
+    return {"version": None, "checksum": or_none(lambda: of_files(paths)) if paths else None}
 
 
-def of_function(name: str) -> dict[str, str | None]:
-    """Identity of ``module:function``, without importing it: the module's own file, and the version of the
-    distribution that installed its package. A module that is not found has neither.
+def of_object(module: str, found: object) -> Identity:
+    """Return the identity of an object of an imported module.
+
+    ``version`` and ``checksum`` are attributes of a published code. Otherwise they are the version of the
+    distribution that installed the module's package, and the checksum of the module's file. None stands for
+    what cannot be found out.
     """
-    module, top = name.partition(":")[0], name.partition(":")[0].partition(".")[0]
-    try:
-        spec = importlib.util.find_spec(module)
-    except (ImportError, ValueError, AttributeError):
-        spec = None
-    origin = Path(spec.origin) if spec and spec.origin and Path(spec.origin).is_file() else None
-    providers = packages_distributions().get(top, [])
-    version = f"{providers[0]} {distribution(providers[0]).version}" if providers else None
-    return {"name": name, "version": version, "checksum": of_files([origin]) if origin else None}
+    return {
+        "version": _text(or_none(lambda: getattr(found, "version", None) or _installed(module))),
+        "checksum": _text(or_none(lambda: getattr(found, "checksum", None) or _file(module))),
+    }
+
+
+def _text(found: object) -> str | None:
+    return found if isinstance(found, str) else None
+
+
+def _file(module: str) -> str | None:
+    path = sys.modules[module].__file__
+    return of_files([path]) if path and os.path.isfile(path) else None
+
+
+def _installed(module: str) -> str:
+    (provider, *_) = packages_distributions()[module.partition(".")[0]]
+    return f"{provider} {distribution(provider).version}"
 
 
 def of_distribution(name: str) -> str | None:
-    """Checksum of an installed distribution: of its RECORD, which has that of each file; None without one."""
-    try:
-        record = Distribution.from_name(name).read_text("RECORD")
-    except PackageNotFoundError:
-        return None
+    """Return the checksum of an installed distribution: of its RECORD, which has that of each file."""
+    record = or_none(lambda: Distribution.from_name(name).read_text("RECORD"))
     return hashlib.sha256(record.encode()).hexdigest()[:DIGITS] if record else None
-
-
-def of_published_code(name: str) -> dict[str, str | None]:
-    """Identity of a published code by its adapter, ``module:attribute``: of the code, not of the adapter."""
-    module, _, attribute = name.partition(":")
-    code: Any = getattr(importlib.import_module(module), attribute)
-    return {"name": name, "version": code.version, "checksum": code.checksum}

@@ -24,10 +24,11 @@ import numpy as np
 from refimpl.errors import InputError
 from refimpl.grid import Array
 from refimpl.operating_system import interrupts_blocked, start_tracker
-from verification.framework.case import Reported, Result, Unavailable
+from verification.framework.case import Reported, Result, Unavailable, readable
 from verification.solver_suite import process
 from verification.solver_suite.check import Check
 from verification.solver_suite.command import require_timeout
+from verification.solver_suite.identity import Identity, of_object
 from verification.solver_suite.process import Source
 from verification.solver_suite.protocol import (
     NUMBERS,
@@ -72,15 +73,16 @@ class Named:
         if not callable(found):
             raise InputError("--solver", self.name, allowed)
         carried = abilities_of(found)
-        return Limited(found, replace(carried, **self.stated)) if self.stated else found
+        return Limited(found, replace(carried, **self.stated), of_object(module, found))
 
 
 @dataclass(frozen=True)
 class Limited:
-    """A solver under test with other abilities than its own attribute states."""
+    """A solver under test with the abilities that it is given here, and its identity."""
 
     solver: SolverUnderTest
     abilities: Abilities
+    identity: Identity = field(default_factory=dict)
 
     def __call__(self, problem: ContactProblem) -> Answer | Array:
         """Pass the problem on."""
@@ -90,7 +92,7 @@ class Limited:
 class Remote:
     """A solver under test in another process: poses problems to it, and starts it anew after a failure.
 
-    ``left`` names the processes that it left behind so far.
+    ``left`` names the processes that it left behind so far; ``identity`` is what its process says of it.
     """
 
     def __init__(self, source: Source, timeout: float, name: str) -> None:
@@ -98,6 +100,7 @@ class Remote:
         self._source, self._limit, self._name = source, timeout + GRACE, name
         self._mark, self._number, self._lost = secrets.token_hex(8), 0, False
         self.left: list[str] = []
+        self.identity: Identity = {}
         start_tracker()
         self.abilities = self._open()
 
@@ -172,12 +175,13 @@ class Remote:
             reply, _ = process.receive(self._socket, seconds=START)
             if reply.get("kind") == "refused":
                 raise InputError(str(reply["field"]), str(reply["value"]), str(reply["allowed"]))
+            self.identity = {name: readable(str(text)) for name, text in reply["identity"].items() if text}
             return Abilities(**reply["abilities"])
         except process.Late:
             reason = f"no end within {START:g} s"
         except (EOFError, OSError):
             reason = f"its process died, {process.exit_text(self._exit_status())}"
-        except (process.Garbled, KeyError, TypeError):
+        except (process.Garbled, AttributeError, KeyError, TypeError):
             reason = "its process sent something else than its abilities"
         raise InputError("--solver", self._name, f"a solver whose import ends well ({reason})")
 
@@ -193,14 +197,16 @@ def run(
     timeout: float,
     name: str = "the solver",
     among: tuple[Check, ...] | None = None,
+    identified: Callable[[Identity], None] = lambda identity: None,
     begin: Callable[[Check], None] = lambda check: None,
     tick: Callable[[Result], None] = lambda result: None,
     left: Callable[[str], None] = lambda process: None,
 ) -> list[Result]:
     """Results of the checks that match ``globs`` (all without any), with ``timeout`` seconds for one problem.
 
-    ``among`` takes the place of the suite; ``name`` is what a refusal calls the solver. ``begin`` and
-    ``tick`` see each check before and after, and ``left`` what the solver left running.
+    ``among`` takes the place of the suite; ``name`` is what a refusal calls the solver. ``identified`` sees
+    the solver's identity, ``begin`` and ``tick`` each check before and after, and ``left`` what the solver
+    left running.
 
     Raises `InputError` for a solver that cannot be loaded, LookupError for a glob that matches nothing.
     """
@@ -209,6 +215,7 @@ def run(
         remote = Remote(source, timeout, name)
         ending.callback(lambda: any(map(left, remote.left)))
         ending.callback(remote.close)
+        identified(remote.identity)
         for check in chosen:
             begin(check)
             results.append(check.case(remote).run())

@@ -180,7 +180,8 @@ def _answer(judge: socket.socket, source: Source) -> None:
     served_by = os.getpid()
     try:
         solver = source()
-        ready = {"kind": "ready", "abilities": asdict(abilities_of(solver))}
+        identity = getattr(solver, "identity", {})
+        ready = {"kind": "ready", "abilities": asdict(abilities_of(solver)), "identity": identity}
     except InputError as refused:
         value = readable(refused.value if isinstance(refused.value, str) else repr(refused.value))
         send(judge, {"kind": "refused", "field": refused.field, "allowed": refused.allowed, "value": value})

@@ -6,6 +6,7 @@ thread everywhere), so how many workers there are, and how often they were kille
 
 from __future__ import annotations
 
+import itertools
 import logging
 import multiprocessing
 import multiprocessing.connection
@@ -119,13 +120,15 @@ def sweep(
     # Points without roughness are the same run in every realisation, and are solved once.
     runs = list({run.key: run for run in study.runs()}.values())
     with ExitStack() as stack:
+        executor = None if scheduler is None else stack.enter_context(_cluster(scheduler))
         kept = stack.enter_context(open_store(store))
         present = kept.keys()
         missing = [run for run in runs if run.key not in present]
         meter = _Meter(len(runs), missing, tick)
         failures: dict[str, str] = {}
         if missing:
-            for run, done in _executed(stack, missing, workers, scheduler):
+            executor = executor or stack.enter_context(_here(workers))
+            for run, done in _through(*executor, missing):
                 failure = _failure(done)
                 if failure is None:
                     kept.add(run, *done.result())
@@ -152,41 +155,33 @@ def _failure(done: Future[tuple[Row, float]]) -> BaseException | None:
     return failure
 
 
-def _executed(stack: ExitStack, runs: list[Run], workers: int, scheduler: str | None) -> Done:
-    if scheduler is not None:
-        executor, size, check_alive = stack.enter_context(_cluster(scheduler))
-        return _through(executor, runs, PER_WORKER * size, check_alive)
-    if workers == 0:
-        here = stack.enter_context(ThreadPoolExecutor(1))
-        return _through(here, runs, depth=1)
-    executor = stack.enter_context(_processes(workers))
-    return _through(executor, runs, PER_WORKER * workers)
-
-
-def _through(
-    executor: Executor, runs: Iterable[Run], depth: int, check_alive: Callable[[], None] = lambda: None
-) -> Done:
-    """Runs as they finish, at most ``depth`` submitted at a time; ``check_alive`` raises where none will."""
+def _through(executor: Executor, depth: int, check_alive: Callable[[], None], runs: Iterable[Run]) -> Done:
+    """Yield runs as they finish, ``depth`` submitted at a time; ``check_alive`` raises where none will."""
     waiting: dict[Future[tuple[Row, float]], Run] = {}
     queue = iter(runs)
-    exhausted = False
-    while waiting or not exhausted:
-        while not exhausted and len(waiting) < depth:
-            run = next(queue, None)
-            if run is None:
-                exhausted = True
-            else:
-                waiting[executor.submit(execute, run.inputs)] = run
+    while True:
+        for run in itertools.islice(queue, depth - len(waiting)):
+            waiting[executor.submit(execute, run.inputs)] = run
+        if not waiting:
+            return
         finished, _ = wait(waiting, POLL_SECONDS, FIRST_COMPLETED)
-        if waiting and not finished:
+        if not finished:
             check_alive()
         for future in finished:
             yield waiting.pop(future), future
 
 
+Workers = tuple[Executor, int, Callable[[], None]]
+"""An executor, the runs that it is given at a time, and a check whether it can still finish them."""
+
+
 @contextmanager
-def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """Fresh interpreters ('spawn') with one thread each, that end when this process does."""
+def _here(workers: int) -> Iterator[Workers]:
+    """This process, or fresh interpreters ('spawn') with one thread each, that end when this process does."""
+    if workers == 0:
+        with ThreadPoolExecutor(1) as thread:
+            yield thread, 1, _alive
+        return
     context = multiprocessing.get_context("spawn")
     with one_thread():
         executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_end_with_parent)
@@ -195,11 +190,15 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
             for _ in range(workers):  # each starts a worker, as none is idle yet
                 executor.submit(int)
         try:
-            yield executor
+            yield executor, PER_WORKER * workers, _alive
             executor.shutdown()
         finally:
             executor.shutdown(wait=False, cancel_futures=True)
             kill_workers(before)  # the next sweep repeats unfinished runs
+
+
+def _alive() -> None:
+    """Processes of one's own need no check: one that dies breaks their pool."""
 
 
 def _end_with_parent() -> None:
@@ -217,8 +216,8 @@ def _end_with_parent() -> None:
 
 
 @contextmanager
-def _cluster(address: str) -> Iterator[tuple[Executor, int, Callable[[], None]]]:
-    """A running dask.distributed scheduler: its workers as an executor, their number, a check of life."""
+def _cluster(address: str) -> Iterator[Workers]:
+    """Use the workers of a running dask.distributed scheduler."""
     try:
         import distributed
 
@@ -236,38 +235,21 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int, Callable[[], None]]]
             allowed = f"a scheduler's address ({unreachable})"
             raise InputError("--scheduler", address, allowed) from unreachable
         stack.callback(client.close, timeout=CONNECT_SECONDS)
-        cluster = _Cluster(client)
-        threads = cluster.threads()
+
+        def check_alive() -> None:
+            """Raise WorkersLost where the scheduler is lost, or no worker comes in time."""
+            try:
+                client.wait_for_workers(1, timeout=PATIENCE_SECONDS)
+            except (OSError, TimeoutError, CancelledError, ValueError) as lost:  # comm errors are OSErrors
+                what = "last worker of the cluster" if client.status == "running" else "scheduler"
+                raise WorkersLost(f"the {what} was lost") from lost
+
+        threads = client.nthreads()
         if not threads or set(threads.values()) != {1}:
             found = f"{address} with workers of {sorted(threads.values())} threads"
             allowed = "workers of one thread each (dask worker --nthreads 1)"
             raise InputError("--scheduler", found, allowed)
-        yield client.get_executor(pure=False), len(threads), cluster.check_alive
-
-
-class _Cluster:
-    """Whether a cluster can still finish what was submitted."""
-
-    def __init__(self, client: Any) -> None:
-        self._client, self._worked = client, time.monotonic()
-
-    def threads(self) -> dict[str, int]:
-        """Threads by worker; raises WorkersLost where the scheduler does not answer in time."""
-        try:
-            ask = self._client.scheduler.ncores
-            found: dict[str, int] = self._client.sync(ask, workers=None, callback_timeout=CONNECT_SECONDS)
-        except (OSError, TimeoutError, CancelledError) as lost:  # comm errors of distributed are OSErrors
-            raise WorkersLost("the scheduler was lost") from lost
-        return found
-
-    def check_alive(self) -> None:
-        """Raise WorkersLost where the scheduler is lost, or there has been no worker for too long."""
-        if self._client.status != "running":
-            raise WorkersLost("the scheduler was lost")
-        if self.threads():
-            self._worked = time.monotonic()
-        elif time.monotonic() - self._worked > PATIENCE_SECONDS:
-            raise WorkersLost("the last worker of the cluster was lost")
+        yield client.get_executor(pure=False), PER_WORKER * len(threads), check_alive
 
 
 class _Meter:

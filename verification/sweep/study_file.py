@@ -17,7 +17,7 @@ from refimpl.planning.plan import METHODS
 from refimpl.scene.parameters import parameters
 from refimpl.scene.scene_file import read_toml, scene_to_dict
 from verification.sweep import posable
-from verification.sweep.study import AXES, FRICTION_AXES, MAX_RUNS, RANDOM, Study
+from verification.sweep.study import AXES, FRICTION_AXES, MAX_RUNS, RANDOM, ROUGHNESS_AXES, Study
 
 KEYS = ("scene", "realisations", "first_seed", "normalise", "vary", "solve")
 SOLVE_KEYS = ("method", "oblique", "slope_correction", "tolerance", "accuracy", "quantity")
@@ -66,6 +66,7 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
     base = read_scene(scene_file)
     vary = _by_axis(vary)
     _refuse_unknown("vary", vary, (*AXES, *varied_names(base)))
+    _refuse_doubles(vary)
     scene = scene_to_dict(base)
     realisations = _whole("realisations", table.get("realisations", 1), at_least=1)
     first_seed = table.get("first_seed", 1 if realisations > 1 else None)
@@ -162,6 +163,16 @@ def _by_axis(vary: Mapping[str, Any]) -> dict[str, Any]:
         if name in vary and axis in vary:
             raise InputError(f"vary.{name}", vary[name], f"one of {name} and {axis}, which are the same")
     return {axes.get(name, name): values for name, values in vary.items()}
+
+
+def _refuse_doubles(vary: Mapping[str, Any]) -> None:
+    """Raise InputError for a number that two axes set: by its full name, and for all surfaces of its kind."""
+    for name in vary:
+        body, part, key = name.partition(".surface[")
+        key = key.partition("].")[2].partition("[")[0]
+        for axis in (key, f"{body}_{key}"):
+            if part and axis in ROUGHNESS_AXES and axis in vary:
+                raise InputError(f"vary.{name}", vary[name], f"one of {name} and {axis}, which set the same")
 
 
 def _values(axis: str, values: object, folder: Path) -> tuple[Any, ...]:

@@ -67,6 +67,13 @@ def test_periodic_planes_too_far_apart(method: str) -> None:
     assert rf.solve(apart, 8, method=method, approach=-0.5e-7).status is rf.Status.CONVERGED
 
 
+def test_a_caller_whose_floating_point_errors_raise_gets_the_same_numbers() -> None:
+    scene = rf.read_scene("rough-planes")
+    with np.errstate(all="raise"):
+        found = rf.solve(scene, 12)
+    assert found.contact_area == rf.solve(scene, 12).contact_area
+
+
 def test_slope_angles_are_of_the_returned_surface() -> None:
     s = rf.solve(replace(SMOOTH, sliding_direction=0.7), 24)
     dx, dy = np.gradient(np.add(*s.surfaces) / 2, *s.grid.spacings)

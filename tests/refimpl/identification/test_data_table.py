@@ -46,6 +46,12 @@ def test_an_index_column_of_r_or_pandas_is_dropped_with_a_note(tmp_path: Path, f
         read_rows(_written(tmp_path, ",load,mu,u_mu\n" + "3,5,0.2,0.01\n1,6,0.2,0.01\n"))
 
 
+def test_marks_that_can_be_decimal_ones_alone(tmp_path: Path) -> None:
+    text = "load;mu;u_mu\n1,320;0,126;0,012\n2,345;0,125;0,012\n"
+    for table in (text, text.replace(",", ".")):
+        assert [row.load for row in read_rows(_written(tmp_path, table))] == [1.320, 2.345]
+
+
 def test_a_row_overrides_the_scene() -> None:
     scene = Row(9.0, 0.1, 0.01, sliding_direction=0.5, sliding_offset=2e-6).of(read_scene("hertz"))
     assert (scene.load, scene.sliding_direction, scene.sliding_offset) == (9.0, 0.5, 2e-6)
@@ -93,6 +99,10 @@ def test_a_file_needs_a_measured_surface() -> None:
         ("load,mu,u_mu,sliding_direction\n5,1,1,x\n", "a finite number in rad, without"),
         ("load,mu,u_mu\n1,0.3,1\n301,0.3,1\n", "data: load = 'neighbouring loads 301 apart'"),
         ("load,mu,u_mu\n1,0.3,1\n2,0.0059,1\n", "data: mu = '0.0059 to 0.3'"),
+        ("load,mu,u_mu\n5,0.1,1\n\uff19,0.1,1\n", "line 3: load = '\uff19': expected a finite number"),
+        ("load;mu;u_mu\n1,320;1;1\n987;1;1\n", "line 2 = '1,320': expected a decimal point, and no mark"),
+        ("load\tmu\tu_mu\n1,320\t1.5\t1\n987\t1\t1\n", "line 2 = '1,320'"),
+        ("load;mu;u_mu\n1.320;0,1;0,01\n987;0,1;0,01\n", "line 2 = '1.320'"),
     ],
 )
 def test_bad_tables_are_refused(tmp_path: Path, text: str, message: str) -> None:

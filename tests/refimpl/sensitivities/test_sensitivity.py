@@ -12,7 +12,7 @@ import pytest
 import refimpl as rf
 from refimpl.scene.parameters import check_tolerances, differentiable_parameters, parameters, with_parameter
 from refimpl.sensitivities.budget import budget
-from refimpl.sensitivities.difference_quotients import NUMBERS
+from refimpl.sensitivities.difference_quotients import NUMBERS, both_sides
 from refimpl.sensitivities.fixed_contact import FixedContact, LinearResponse
 from refimpl.sensitivities.sensitivity import (
     Sensitivity,
@@ -480,3 +480,8 @@ def test_what_makes_another_realisation_has_no_derivative() -> None:
         assert f"lower.surface[0].{name}" in parameters(scene(FRACTAL))
         with pytest.raises(rf.InputError, match=name):
             check_tolerances(scene(FRACTAL), {f"lower.surface[0].{name}": 0.1})
+
+
+def test_a_step_that_no_double_holds_is_refused() -> None:
+    with pytest.raises(rf.InputError, match="a value with another allowed one"):
+        both_sides("lay", 1e22, 1e-24, float)

@@ -157,6 +157,12 @@ def test_a_parser_that_crashes_or_never_ends_is_a_refusal_and_the_next_file_is_r
     with pytest.raises(InputError, match="took too long"):
         read_untrusted(path, partial(time.sleep, 60))
     monkeypatch.undo()
+    monkeypatch.setattr(reader_process, "CPU_SECONDS", 0.5)
+    with pytest.raises(InputError, match="took too long"):
+        read_untrusted(path, partial(pow, 7, 10**8))
+    monkeypatch.undo()
+    with pytest.raises(InputError, match="MemoryError"):
+        read_untrusted(path, partial(bytes, 2**32))
     np.testing.assert_allclose(MeasuredSurface(path).reading.heights, ROUGH, rtol=1e-12, atol=0)
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import logging
+import re
 import warnings
 import zipfile
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -161,6 +163,24 @@ def test_x3p_of_other_writers(
     reading = read(x3p_of(tmp_path / "map.x3p", folder, revision, backslash))
     same(reading.heights)
     assert reading.notes == notes
+
+
+def test_x3p_whose_data_are_not_those_of_its_checksum(tmp_path: Path) -> None:
+    stated = r"<MD5ChecksumPointData>[^<]*"
+    for checksum, refused in (
+        ("0" * 32, True),
+        ("unknown", False),
+    ):  # no checksum
+        path = x3p_of(tmp_path / "map.x3p")
+        with zipfile.ZipFile(path) as archive:
+            members = {name: archive.read(name) for name in archive.namelist()}
+        main, count = re.subn(stated, f"<MD5ChecksumPointData>{checksum}", members["main.xml"].decode())
+        assert count == 1
+        with zipfile.ZipFile(path, "w") as archive:
+            for name, content in (members | {"main.xml": main.encode()}).items():
+                archive.writestr(name, content)
+        with pytest.raises(InputError, match="checksum") if refused else nullcontext():
+            same(read(path).heights)
 
 
 @pytest.mark.parametrize("damage", ["cut", "lengths", "count"])

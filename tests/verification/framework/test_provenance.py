@@ -10,6 +10,16 @@ import pytest
 from verification.framework import provenance
 
 
+def test_provenance_that_cannot_be_had_is_null(monkeypatch: pytest.MonkeyPatch) -> None:
+    def raises(*_: object) -> None:
+        raise TypeError("odd metadata")
+
+    for owner, name in ((provenance, "version"), (provenance.platform, "platform")):
+        monkeypatch.setattr(owner, name, raises)
+    assert provenance.versions()["numpy"] is None
+    assert provenance.machine()["platform"] is None
+
+
 def git(*arguments: str) -> str:
     who = ("-c", "user.name=n", "-c", "user.email=e")
     done = subprocess.run(["git", *who, *arguments], check=True, capture_output=True, text=True)

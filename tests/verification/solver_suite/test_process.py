@@ -16,7 +16,7 @@ import pytest
 from tests.verification.cli.children import forked, started
 from verification.cli import main
 from verification.framework.case import Result
-from verification.solver_suite import isolated, process
+from verification.solver_suite import identity, isolated, process
 from verification.solver_suite.isolated import Named
 from verification.solver_suite.process import unwinding
 
@@ -178,6 +178,23 @@ def test_a_solver_that_patches_the_judge_or_forks_is_judged_once_a_case(
     folder: Path, name: str, status: str
 ) -> None:
     assert [(r.id, r.status) for r in judged(name)] == [(case, status) for case in CASES]
+
+
+def test_a_package_under_test_is_imported_in_its_own_process_alone(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its identity too is found there; an installed package of odd metadata costs its version alone."""
+    (folder / "pkg").mkdir()
+    (folder / "pkg/__init__.py").write_text("import os; open('imported', 'a').write(f'{os.getpid()} ')")
+    (folder / "pkg/code.py").write_text("def solve(problem):\n    return 0 * problem.gap\n")
+    (folder / "odd-1.dist-info").mkdir()
+    (folder / "odd-1.dist-info/METADATA").write_text("Name: odd\nVersion: 1\n")
+    (folder / "odd-1.dist-info/RECORD").write_text("a,b,c,d,e\n")
+    monkeypatch.syspath_prepend(str(folder))
+    assert main(["verify", "--solver", "pkg.code:solve", "--only", CASES[0], "--json", "out.json"]) == 1
+    assert str(os.getpid()) not in (folder / "imported").read_text().split()
+    solver = json.loads((folder / "out.json").read_text())["solver"]
+    assert (solver["version"], solver["checksum"]) == (None, identity.of_files(["pkg/code.py"]))
 
 
 @pytest.mark.parametrize("solver", ["leaves", "hides"])

@@ -243,6 +243,11 @@ def test_an_answer_may_be_an_archive(tmp_path: Path) -> None:
         ("cp $0/gap.csv $0/pressure.csv; cp $0/problem.npz $0/answer.npz", "both"),
         ("printf '1,2\\n\\n3,4,\\n' > $0/pressure.csv", "line 3, number 3: '' is no number"),
         ("printf '1,2\\n0.0D+00,4\\n' > $0/pressure.csv", "line 2, number 1: '0.0D+00' is no number"),
+        ("printf '1,2\\n1_0,4\\n' > $0/pressure.csv", "line 2, number 1: '1_0' is no number"),
+        (
+            "cp $0/gap.csv $0/pressure.csv; echo '{\"approach\": 1, \"approach\": 2}' > $0/answer.json",
+            "the key 'approach' is there twice",
+        ),
         ("printf '1,2\\n3,4\\n5\\n' > $0/pressure.csv", "line 3 has 1 numbers, those before have 2"),
         (
             "cp $0/gap.csv $0/pressure.csv; echo '{\"converged\": false}' > $0/answer.json",

@@ -8,6 +8,7 @@ import io
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.documents import ROOT
@@ -84,16 +85,16 @@ def test_a_run_writes_its_table(tmp_path: Path, capsys: pytest.CaptureFixture[st
 def test_the_identity_of_a_solver(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     script = tmp_path / "mine.py"
     script.write_text("x = 1\n")
-    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.chdir(tmp_path)
     inner = hashlib.sha256(b"x = 1\n").digest()
     expected = hashlib.sha256(inner).hexdigest()[: identity.DIGITS]
-    assert identity.of_function("mine:solve") == {"name": "mine:solve", "version": None, "checksum": expected}
-    assert identity.of_function("no_such_module:solve")["checksum"] is None
-    program = identity.of_command(f"sh {script}")["checksum"]
+    assert identity.of_files(["mine.py"]) == expected
+    program = identity.of_command(["sh", str(script)])["checksum"]
     script.write_text("x = 2\n")
-    assert identity.of_command(f"sh {script}")["checksum"] != program
-    assert identity.of_command("no-such-program")["checksum"] is None
-    assert identity.of_function("numpy:sum")["version"] == f"numpy {versions()['numpy']}"
+    assert identity.of_command(["sh", str(script)])["checksum"] not in (program, None)
+    assert identity.of_command(["no-such-program"])["checksum"] is None
+    assert identity.of_object("numpy", np.sum)["version"] == f"numpy {versions()['numpy']}"
+    assert identity.of_object("no_such_module", 1) == {"version": None, "checksum": None}
     assert identity.of_distribution("numpy") is not None
     assert identity.of_distribution("no-such-distribution") is None
 

@@ -129,6 +129,11 @@ REFUSED: list[tuple[str, dict[str, Any]]] = [
     (f"vary.{PATH}", {"realisations": 1, "vary": {"grid": 8, PATH: ["b.npy"]}}),  # no measured surface
     *((f"vary.{SEED}", {"realisations": 1, "vary": {"grid": 8, SEED: k}}) for k in ([1.5], [-1], [1, 1])),
     ("vary.friction.tau", {"vary": {"grid": 8, "tau": 1e6, "friction.tau": 1e6}}),
+    ("vary.lower.surface[0].rms", {"vary": {"grid": 8, "lower_rms": 1e-6, "lower.surface[0].rms": 2e-6}}),
+    (
+        "vary.upper.surface[1].correlation_length",
+        {"vary": {"grid": 8, "correlation_length": 1e-4, "upper.surface[1].correlation_length": 2e-4}},
+    ),
 ]
 
 

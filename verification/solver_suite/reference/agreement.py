@@ -8,7 +8,6 @@ pressures must lie within the sum of both proven bounds.
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
@@ -19,6 +18,7 @@ import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
+from reports.result_files import parsed
 from verification.solver_suite.protocol import ContactProblem, Coupling
 from verification.solver_suite.reference.certified import CONTACT, NotCertified, certified
 from verification.solver_suite.reference.files import FORMAT, INDEX, SUMS, checksums
@@ -27,7 +27,7 @@ from verification.solver_suite.reference.files import FORMAT, INDEX, SUMS, check
 def index_of(folder: Path) -> dict[str, Any]:
     """Read the index. Raises `InputError` for a folder without one of this format."""
     try:
-        index: Any = json.loads((folder / INDEX).read_text(encoding="utf-8"))
+        index: Any = parsed((folder / INDEX).read_text(encoding="utf-8"))
     except (OSError, ValueError) as broken:
         raise InputError("DIR", str(folder), f"a folder of reference data ({broken})") from broken
     if not isinstance(index, dict) or index.get("format") != FORMAT:
