@@ -31,8 +31,8 @@ STATED = {
     """,
     "two_maps_along_a_track": """
         21 of 21 converged
-        mu from 0.114 to 0.133, mean 0.1237
-        Sq = 0.249 um, median bar 3.0%
+        mu from 0.114 to 0.133, mean 0.1236
+        Sq = 0.249 um, median bar 2.4%
     """,
     "yield_study": """
         psi from 0.22 to 4.31, plastic share from 0.00 to 0.90
