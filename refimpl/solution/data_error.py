@@ -63,7 +63,7 @@ def unseen_share(z: Array, periodic: bool = False) -> float:
     >>> bool(unseen_share(np.add.outer(np.sin(x), np.sin(x))) < 1e-3)
     True
     >>> round(unseen_share(np.random.default_rng(0).normal(size=(64, 64))), 1)
-    0.7
+    0.8
     """
     second = _interpolation_loss(z, periodic)
     few = min(z.shape) < 2 * _LEAST_POINTS  # every fourth point says nothing

@@ -23,7 +23,7 @@ _SCALES = {
         Unit("kN", 1e3), Unit("MN", 1e6),
     ),
 }  # fmt: skip
-"""Units by that in SI: first the usual one, then from small to large."""
+"""Units by that in SI, the usual one first."""
 _USUAL = 1e-3, 1e5  # numbers that keep the usual unit
 
 
@@ -32,7 +32,7 @@ def printed_unit(value: float, unit: str) -> Unit:
 
     ``unit`` is that in SI, "1" for none.
 
-    >>> printed_unit(5.86e-8, "m^2").name, printed_unit(3e-13, "m^2").name, printed_unit(-2e-6, "N").name
+    >>> printed_unit(5.86e-8, "m^2").name, printed_unit(9.7e-10, "m^2").name, printed_unit(-2e-6, "N").name
     ('mm^2', 'um^2', 'uN')
     >>> printed_unit(0.31, "1")
     Unit(name='', size=1.0)
@@ -42,4 +42,5 @@ def printed_unit(value: float, unit: str) -> Unit:
     if not 0 < size < math.inf or _USUAL[0] <= size / usual.size < _USUAL[1]:
         return usual
     fitting = [other for other in others if other.size <= size]
-    return fitting[-1] if fitting else min(others, default=usual, key=lambda other: other.size)
+    smallest = min(others, default=usual, key=lambda other: other.size)
+    return max(fitting, default=smallest, key=lambda other: other.size)
