@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
 
-def run() -> int:
+def run(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; status 2 and one line where a module of the user has the name of its package."""
     found = find_spec("verification")  # a package that is found is not yet imported
     places = list(found.submodule_search_locations or ()) if found else []
@@ -20,7 +21,7 @@ def run() -> int:
         return 2
     from verification.start import run as start
 
-    return start()
+    return start(arguments)
 
 
 if __name__ == "__main__":
