@@ -1,15 +1,15 @@
 """Every number that the paper prints and we compute: both, the difference E, and its uncertainty u.
 
 In terms of ASME V&V 20, E is the comparison error of a replication; no experiment enters. u, at 95 %, holds
-the sampling of the paper's random surfaces and of ours, and the rounding of the printed number. |E| > u is a
-discrepancy.
+the sampling of the paper's random surfaces and of ours, the rounding of the printed number, and that of the
+printed inputs (case reproduction/input-rounding). |E| > u is a discrepancy.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -21,12 +21,16 @@ Cases = Mapping[str, Case]
 
 
 SCATTER = "Section 8: scatter"
+INPUTS = "reproduction/input-rounding"
+ROUNDED = "input rounded in print"
+"""The verdict on numbers that agree by the rounding of a printed input alone."""
 
 
 @dataclass(frozen=True)
 class Number:
     """A printed number and ours, both in ``unit``; ``half_width`` is the 95 % half width of ours over random
-    surfaces, ``sampling`` that of the paper's, ``rounding`` half a unit of the last printed digit.
+    surfaces, ``sampling`` that of the paper's, ``rounding`` half a unit of the last printed digit, ``inputs``
+    the effect of as much of the printed inputs; ``rounded_radius`` is ours with R = 0.143 m.
     """
 
     part: str
@@ -38,6 +42,8 @@ class Number:
     half_width: float
     rounding: float
     sampling: float = 0.0
+    inputs: float = 0.0
+    rounded_radius: float | None = None
 
     @property
     def difference(self) -> float:
@@ -47,12 +53,18 @@ class Number:
     @property
     def uncertainty(self) -> float:
         """u, 95 %."""
-        return math.hypot(self.half_width, self.sampling, self.rounding)
+        return math.hypot(self.half_width, self.sampling, self.rounding, self.inputs)
 
     @property
     def within(self) -> bool:
         """True where E is within u."""
         return abs(self.difference) <= self.uncertainty
+
+    @property
+    def by_inputs(self) -> bool:
+        """True where E is within u by the rounding of printed inputs alone."""
+        exact = math.hypot(self.half_width, self.sampling, self.rounding)
+        return exact < abs(self.difference) <= self.uncertainty
 
     @property
     def reading(self) -> bool:
@@ -104,9 +116,10 @@ ONE_SURFACE = {  # relative standard deviation between surfaces of Eq. (9): 75, 
 def numbers(cases: Cases) -> list[Number]:
     """Return the printed numbers that the cases hold, in the paper's order of parts."""
     found = [*_single(cases)]
+    inputs = cases[INPUTS]["data"] if INPUTS in cases else {}
     for name, quantity, factor, unit in TABLE3:
         try:
-            found += _table3(cases[f"reproduction/{name}"]["data"], quantity, factor, unit)
+            found += _table3(cases[f"reproduction/{name}"]["data"], quantity, factor, unit, inputs)
         except OTHER_SHAPE:
             continue
     return [n for n in found if n.printed > 0 and math.isfinite(n.computed) and n.computed > 0]
@@ -118,7 +131,38 @@ def _single(cases: Cases) -> Iterator[Number]:
         if value is not None:
             computed, (ours, papers) = value * factor, _sampling(quantity)
             half, sampling = 2 * ours * computed, 2 * papers * computed
-            yield Number(part, quantity, label, unit, printed, computed, half, rounding, sampling)
+            found = Number(part, quantity, label, unit, printed, computed, half, rounding, sampling)
+            yield _of_inputs(found, *_smooth(quantity, label, cases))
+
+
+SLOPES = {"0.084 µm": math.hypot(0.5 / 84, 0.5 / 104), "1.68 µm": math.hypot(0.5 / 1680, 0.5 / 104)}
+"""Relative uncertainty of rms slopes, which go with sigma / l, by the last digits of both."""
+HERTZ = {"contact radius a0": ("A", 0.5), "peak pressure": ("p_max", 1.0)}  # number, power of it
+
+
+def _smooth(quantity: str, label: str, cases: Cases) -> tuple[float, float | None]:
+    """Relative effects of the inputs and of R = 0.143 m on a number of smooth bodies, or on a slope."""
+    if quantity == "rms slope":
+        return SLOPES[label], None
+    if label not in HERTZ or INPUTS not in cases:
+        return 0.0, None
+    name, power = HERTZ[label]
+    u, change = _effects(cases[INPUTS]["data"], name, 0.0)
+    return power * u, None if change is None else (1 + change) ** power - 1
+
+
+def _effects(inputs: Mapping[str, Any], name: str, sigma: float) -> tuple[float, float | None]:
+    """Relative effects of the inputs and of R = 0.143 m in a roughness's column; none if not recorded."""
+    roughness = inputs.get("sigma_e (um)", ())
+    columns = [k for k, s in enumerate(roughness) if math.isclose(s, sigma, abs_tol=1e-3)]
+    if not columns:
+        return 0.0, None
+    return inputs[f"{name}: u of inputs"][columns[0]], inputs[f"{name}: change at R = 0.143 m"][columns[0]]
+
+
+def _of_inputs(found: Number, u: float, change: float | None) -> Number:
+    at = None if change is None else found.computed * (1 + change)
+    return replace(found, inputs=u * found.computed, rounded_radius=at)
 
 
 def _sampling(quantity: str) -> tuple[float, float]:
@@ -129,11 +173,14 @@ def _sampling(quantity: str) -> tuple[float, float]:
     return one / math.sqrt(FEWEST), one
 
 
-def _table3(data: Mapping[str, Any], quantity: str, factor: float, unit: str) -> list[Number]:
+def _table3(
+    data: Mapping[str, Any], quantity: str, factor: float, unit: str, inputs: Mapping[str, Any]
+) -> list[Number]:
     names = ("sigma_e (um)", "mesh", "printed", "ours", "half width 95 %")
     rows = zip(*(data[name] for name in names), strict=True)
-    return [
-        Number(
+    found, name = [], quantity.partition(",")[0].replace("μ", "mu")
+    for sigma, mesh, printed, ours, half in rows:
+        n = Number(
             "Table 3",
             quantity,
             f"σ_e {sigma:.3g} µm, {mesh:.0f}²",
@@ -144,8 +191,8 @@ def _table3(data: Mapping[str, Any], quantity: str, factor: float, unit: str) ->
             _half_digit(factor * printed),
             sampling=factor * half,  # as many surfaces
         )
-        for sigma, mesh, printed, ours, half in rows
-    ]
+        found.append(_of_inputs(n, *_effects(inputs, name, sigma)))
+    return found
 
 
 def _half_digit(value: float) -> float:
@@ -194,7 +241,7 @@ def verdict_of(group: Sequence[Number]) -> str:
     if not within:
         return "not established"
     if all(within):
-        return "confirmed"
+        return ROUNDED if any(n.by_inputs for n in group) else "confirmed"
     return "confirmed with conditions" if any(within) and group[0].reading else "not confirmed"
 
 

@@ -51,6 +51,6 @@ AGREEMENT = Figure(
     ("quantity", "label", "printed", "computed", "uncertainty 95 %", "computed / printed"),
     _draw,
     "Printed numbers against ours, by quantity (Table 3: fine mesh). Bars are u at 95 %: "
-    "the sampling of random surfaces, the paper's and ours, and the rounding of the printed number.",
+    "the sampling of random surfaces, the paper's and ours, and the rounding of printed numbers and inputs.",
     (7.4, 4.6),
 )

@@ -10,7 +10,7 @@ from importlib import resources
 from itertools import pairwise
 from typing import Any
 
-from reports.agreement import Number, as_cases, by_quantity, numbers, verdict_of
+from reports.agreement import ROUNDED, Number, as_cases, by_quantity, numbers, verdict_of
 from reports.findings import MISSING, by_claim, filled, note
 from reports.results import Case, worst
 
@@ -19,6 +19,7 @@ VERDICTS = (
     NOT_ESTABLISHED,
     "not confirmed",
     "erratum proposed",
+    ROUNDED,
     "confirmed with conditions",
     "confirmed",
     "by construction",

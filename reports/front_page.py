@@ -41,7 +41,10 @@ class FrontPage:
     """Printed numbers that agree within u, and all that have a computed counterpart."""
     all_of_table3: tuple[int, int]
     table3: Sequence[Number]
-    beyond: int
+    unexplained: Sequence[Number]
+    """Numbers of Table 3's fine mesh beyond u."""
+    by_inputs: tuple[int, int]
+    """Printed numbers that agree by the rounding of printed inputs alone, and those of them by R alone."""
     worst: Sequence[Number]
     """The number of the largest ratio, or reciprocal ratio, to the printed one of each of the three worst
     quantities, of those beyond u; without quantities that an erratum explains."""
@@ -78,7 +81,8 @@ def front_page(evidence: Evidence, claims: Sequence[Judged], numbers: Sequence[N
         printed=_agreeing(numbers),
         all_of_table3=_agreeing([n for n in numbers if n.part == "Table 3"]),
         table3=table3,
-        beyond=sum(not n.within for n in table3),
+        unexplained=[n for n in table3 if not n.within],
+        by_inputs=_by_inputs(numbers),
         worst=_worst(numbers),
         hertz=[said for said in map(_hertz, evidence.cases) if said],
         quantities=[_quantity(name, group) for name, group in by_quantity(numbers).items()],
@@ -93,7 +97,14 @@ def _agreeing(numbers: Sequence[Number]) -> tuple[int, int]:
     return sum(within), len(within)
 
 
-EXPLAINED = ("Hertz, R = 0.14 m", "rms slope", "ψ(0.5 µm), Eq. (12)")
+def _by_inputs(numbers: Sequence[Number]) -> tuple[int, int]:
+    """Numbers within u by inputs; of those the ones whose E R = 0.143 m more than halves."""
+    found = [n for n in numbers if n.by_inputs]
+    radius = [n for n in found if n.rounded_radius and abs(n.rounded_radius - n.printed) < abs(n.difference) / 2]
+    return len(found), len(radius)
+
+
+EXPLAINED = ("rms slope", "ψ(0.5 µm), Eq. (12)")
 """Quantities whose printed number an erratum explains."""
 
 

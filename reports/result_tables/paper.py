@@ -75,7 +75,7 @@ CLAIMS: dict[str, Column] = {
 def claims(evidence: Evidence) -> str:
     """List the paper's claims that do not hold or hold with conditions, and errata."""
     found = judged(evidence.cases, evidence.errata)
-    shown = [item for verdict in VERDICTS[:4] for item in found if item.verdict == verdict and item.cases]
+    shown = [item for verdict in VERDICTS[:5] for item in found if item.verdict == verdict and item.cases]
     return "\n\n".join([listing("Claims of the paper", _counted(found), shown, CLAIMS), errata(evidence)])
 
 

@@ -131,6 +131,40 @@ def test_what_is_missing_in_a_sentence_is_not_available() -> None:
     assert filled(text, {"a/1": MADE}) == f"3.0 and {MISSING} of {MISSING}, 3"
 
 
+ROUNDING = {
+    "sigma_e (um)": [0.0, 1.68],
+    "A: u of inputs": [0.024, 0.01],
+    "A: change at R = 0.143 m": [0.0142, 0.0],
+    "p_max: u of inputs": [0.024, 0.01],
+    "p_max: change at R = 0.143 m": [-0.014, 0.0],
+}
+
+
+def test_the_rounding_of_printed_inputs_is_part_of_u() -> None:
+    """A of the ball is 1.6 % above print: beyond its last digit, within it and 2.4 % by the inputs."""
+    cases = CASES | {"reproduction/input-rounding": case("a/1", data=ROUNDING)}
+    ball, _, rough = (n for n in numbers(cases) if n.part == "Table 3")
+    assert ball.uncertainty == pytest.approx(math.hypot(0.0005, 0.024 * 0.65))
+    assert (ball.within, ball.by_inputs, rough.by_inputs) == (True, True, False)
+    assert ball.rounded_radius == pytest.approx(0.65 * 1.0142)
+    assert rough.uncertainty == pytest.approx(math.hypot(4e-3 * math.sqrt(2), 0.0005, 0.0019))
+    assert verdict_of([ball]) == "input rounded in print"
+    assert verdict_of([ball, rough]) == "not confirmed"
+
+
+def test_a_radius_of_contact_has_half_the_relative_uncertainty_of_its_area() -> None:
+    cases = {
+        "reproduction/input-rounding": case("a/1", data=ROUNDING),
+        "hertz/radius-corrected": case("a/2", value=0.448e-3),
+        "hertz/peak-pressure": case("a/3", value=166.3e6),
+    }
+    radius, peak = numbers(cases)
+    assert (radius.inputs / radius.computed, peak.inputs / peak.computed) == pytest.approx((0.012, 0.024))
+    assert radius.rounded_radius == pytest.approx(0.448 * math.sqrt(1.0142))
+    assert radius.by_inputs
+    assert peak.by_inputs
+
+
 @pytest.mark.parametrize(("status", "value"), [("pass", 2.0), ("fail", 1.0)])
 def test_a_long_case_stands_for_the_quick_one_where_it_passed(status: str, value: float) -> None:
     quick, long = case("b/1", value=1.0), case("b/1-full", status, value=2.0)
@@ -172,7 +206,7 @@ def test_the_first_page_by_hand() -> None:
     errata = [{"equation": "A5"}, {"equation": "A1"}]
     evidence: Any = SimpleNamespace(cases=cases, studies=STUDIES, errata=errata)
     found = front_page(evidence, [], NUMBERS)
-    assert (found.beyond, found.worst, found.conversion) == (1, [NUMBERS[0]], 1)
+    assert (found.unexplained, found.worst, found.conversion) == ([NUMBERS[0]], [NUMBERS[0]], 1)
     assert found.table3_rows == {"μ": NUMBERS[:1], "A (mm²)": NUMBERS[1:2]}
     assert found.roughness == ["1.68 µm", "0 µm"]
     assert found.hertz == ["approach 2.5 for 2.4 µm (4.2e-02)"]

@@ -20,8 +20,6 @@ from verification.reproduction.printed import (
     FIG6_RMS,
     FLAT_RMS,
     HARDNESS,
-    HERTZ_PRESSURE,
-    HERTZ_RADIUS,
     LENGTH_IN_ELEMENTS,
     LOWEST_FRICTION,
     QUOTED_SLOPES,
@@ -30,9 +28,8 @@ from verification.reproduction.printed import (
     TABLE2,
     TABLE3,
 )
-from verification.reproduction.table1 import RADIUS, SMOOTH, hertz
+from verification.reproduction.table1 import SMOOTH
 
-ROUNDED_RADIUS = 0.1430  # m: printed as 0.14
 LAW = SMOOTH.friction
 
 
@@ -53,18 +50,6 @@ class Erratum:
 
 def _off(value: float, reference: float) -> float:
     return abs(value / reference - 1)
-
-
-def _hertz_misfit(radius: float) -> float:
-    smooth = hertz(radius=radius)
-    return max(_off(HERTZ_RADIUS, smooth.contact_radius), _off(HERTZ_PRESSURE, smooth.peak_pressure))
-
-
-def _smooth_column_misfit(radius: float) -> float:
-    area = math.pi * hertz(radius=radius).contact_radius ** 2
-    mu = friction_coefficient_at(LAW, SMOOTH.load / area)
-    printed = TABLE3[0]
-    return max(_off(printed.contact_area[-1], area), _off(printed.friction_coefficient[-1], mu))
 
 
 def _slope_misfit(factor: float) -> float:
@@ -116,29 +101,6 @@ def _outside(roughness: Iterable[float]) -> float:
 
 
 ERRATA = (
-    Erratum(
-        "hertz",
-        "Table 1, Fig. 6",
-        "'0.14' (R in m, Table 1) beside 'a_0=0.452 mm' and 'f_0=163.9 MPa' (Fig. 6)",
-        "conjecture: R = 0.143 m, rounded in Table 1",
-        "largest relative difference of the quoted radius and pressure from Hertz",
-        lambda: _hertz_misfit(RADIUS),
-        lambda: _hertz_misfit(ROUNDED_RADIUS),
-        0.0012,
-        "half a unit of a0's last printed digit, 0.11 %",
-    ),
-    Erratum(
-        "smooth-column",
-        "Table 3, sigma = 0",
-        "'6.43' (A / 0.1 mm^2) and '2.18' (mu / 0.1) beside '0.14' (R in m, Table 1)",
-        "conjecture: R = 0.143 m, as for Fig. 6",
-        "largest relative difference of A from pi a0^2 and of mu from Eq. (10)",
-        lambda: _smooth_column_misfit(RADIUS),
-        lambda: _smooth_column_misfit(ROUNDED_RADIUS),
-        0.006,
-        "a staircase of 450 elements about a circle of radius 143 elements: 0.5 % of A; and the printed "
-        "digits",
-    ),
     Erratum(
         "slopes",
         "section 6.1",

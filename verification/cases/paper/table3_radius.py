@@ -10,7 +10,7 @@ import refimpl as rf
 from verification.cases import Measured, Verdict, case, judged
 from verification.reproduction import table3
 from verification.reproduction.ensemble import column, estimate, rows_at
-from verification.reproduction.errata import ROUNDED_RADIUS
+from verification.reproduction.inputs import ROUNDED_RADIUS
 from verification.reproduction.printed import TABLE3, Column
 from verification.reproduction.table1 import RADIUS, rough
 
@@ -35,7 +35,7 @@ def radius() -> Measured:
     """Table 3 with R = 0.143 m, and with a lower E*.
 
     Claim: R = 0.143 m in place of the printed 0.14 m brings the rough columns of Table 3 nearer to print
-    Source: paper Tables 1 and 3, Fig. 6; errata/hertz
+    Source: paper Tables 1 and 3, Fig. 6; reproduction/input-rounding
     Tolerance: largest relative change of a mean by the radius: A of a smooth contact goes with R^(2/3), 1.4
     %; a rough one's with a smaller power; paired surfaces leave 1 % of f_max
 
