@@ -100,8 +100,9 @@ def _agreeing(numbers: Sequence[Number]) -> tuple[int, int]:
 def _by_inputs(numbers: Sequence[Number]) -> tuple[int, int]:
     """Numbers within u by inputs; of those the ones whose E R = 0.143 m more than halves."""
     found = [n for n in numbers if n.by_inputs]
-    radius = [n for n in found if n.rounded_radius and abs(n.rounded_radius - n.printed) < abs(n.difference) / 2]
-    return len(found), len(radius)
+    remains = [abs((n.rounded_radius or n.computed) - n.printed) for n in found]
+    halved = [value < abs(n.difference) / 2 for value, n in zip(remains, found, strict=True)]
+    return len(found), sum(halved)
 
 
 EXPLAINED = ("rms slope", "ψ(0.5 µm), Eq. (12)")
