@@ -191,7 +191,7 @@ ROUGH = (
         {"kappa": "mean of eight realisations", "kappa, H = 0.3": "H = 0.3", "kappa, H = 0.8": "H = 0.8"},
         exact={
             "Bush, Gibson and Thomas": "Bush, Gibson and Thomas 1975",
-            "simulations, low": "simulations, from",
+            "simulations, low": "lowest of published simulations",
             "Persson": "Persson 2001",
         },
         band=("standard error", "standard error"),

@@ -81,12 +81,12 @@ CHAPTERS = (
     Chapter(
         "limits",
         "Limits",
-        "Where the model and this implementation stop being a reference, and what a solve neglects.",
+        "Limits of validity of the model and of this implementation, and terms that a solve may neglect.",
         ("planning",),
     ),
     Chapter(
         "trust",
-        "Appendix I: verification of the verification",
+        "Appendix I: quality of the test suite",
         "Random examples and extreme inputs: how far the checks can be trusted.",
         ("extremes",),
         ("hypothesis", "extremes"),

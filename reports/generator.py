@@ -73,6 +73,7 @@ def render(
             interval=interval,
             decimals=decimals,
             facts=facts,
+            again=again(evidence),
             rerun=lambda case: rerun(case, evidence),
             pictures=case_pictures,
             picture=one_picture,
@@ -146,6 +147,15 @@ def _single(value: object) -> bool:
 
 def _text(value: Any) -> str:
     return str(value) if isinstance(value, str | bool) else number(value)
+
+
+def again(evidence: Evidence) -> str:
+    """Return a command that makes the run again; that of a solver under test is the recorded one."""
+    run = evidence.run
+    if evidence.solver is not None:
+        return str(run["provenance"]["command"])
+    only = "".join(f" --only {shlex.quote(pattern)}" for pattern in run["only"])
+    return f"rough-friction verify --tier {run['tier']}{only} --json results.json"
 
 
 def rerun(case: Case, evidence: Evidence) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.figure import Figure as Canvas
 
 from reports.drawing import Data, Figure
@@ -100,8 +101,8 @@ def _map(canvas: Canvas, data: Data) -> None:
     with np.errstate(divide="ignore"):
         decades = np.ma.masked_invalid(np.clip(np.log10(field), -_DECADES, _DECADES))
     axes = canvas.add_subplot()
-    axes.set_facecolor("#9a9a9a")
-    image = axes.imshow(decades, cmap="RdBu_r", vmin=-_DECADES, vmax=_DECADES, aspect="auto")
+    colours = colormaps["RdBu_r"].with_extremes(bad="#9a9a9a")
+    image = axes.imshow(decades, cmap=colours, vmin=-_DECADES, vmax=_DECADES, aspect="auto")
     axes.set_xticks(range(len(names)), names, rotation=30, ha="left", fontsize=8)
     axes.xaxis.tick_top()
     axes.set_yticks(range(len(cases)), cases, fontsize=7)

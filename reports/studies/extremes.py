@@ -65,8 +65,8 @@ def sentence(document: Document) -> str:
     )
     again = sum(row["oracle"] in SECOND_SOLVE for row in right)
     return (
-        f"{len(rows)} extreme inputs: {counts['wrong']} wrong by more than the input leaves open, "
-        f"{counts['crash']} crashes, {counts['detected failure']} with a status that says that they failed, "
+        f"{len(rows)} extreme inputs: {counts['wrong']} wrong beyond the conditioning of the input, "
+        f"{counts['crash']} crashes, {counts['detected failure']} failed and reported it, "
         f"{len(right) - len(few)} right to {FEW} digits and {len(few)} to fewer"
         f"{f' ({judges})' if few else ''}; "
         f"{again} of the right ones are judged by a second solve of this code"

@@ -210,3 +210,9 @@ def test_pages_of_two_runs_differ_in_provenance_alone() -> None:
         expected = expected.replace(there, here)
     expected = expected.replace("a1" * 6, "b2" * 6)
     assert render(run_of(22.2, "2002-02-02", "b2" * 20, "two")) == expected
+
+
+def test_provenance_has_commands_of_which_the_second_reads_what_the_first_writes() -> None:
+    page = render(results(case("a/1"), only=["a/*"]))
+    first = "rough-friction verify --tier quick --only &#39;a/*&#39; --json results.json"
+    assert f"{first}\nrough-friction report --results results.json" in page

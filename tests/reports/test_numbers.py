@@ -218,5 +218,5 @@ def test_the_first_page_by_hand() -> None:
         "Classes where coverage fails: p_max of flat (92 %)",
     ):
         assert text in bars
-    assert "1 wrong by more than the input leaves open, 2 crashes, 3 with a status" in extremes
+    assert "1 wrong beyond the conditioning of the input, 2 crashes, 3 failed and reported it" in extremes
     assert (found.judged, found.printed, found.all_of_table3) == (0, (1, 3), (1, 3))
