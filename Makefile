@@ -19,8 +19,9 @@ report: $(READY)
 # The committed results of cases: the command of each file, as its row in reports/results/README.md states it. The
 # commands of the other files, which are no cases, stand there too.
 results: $(READY)
-	sed -n 's/^| `\([a-z_0-9]*\).json` | `\(rough-friction verify [^`]*\)FILE`.*/\2reports\/results\/\1.json.gz/p' \
+	sed -n 's/^| `\([a-z_0-9]*\).json` | `\(rough-friction verify [^`]*\)FILE`.*/\2reports\/results\/\1.json/p' \
 		reports/results/README.md | PATH="$(CURDIR)/$(BIN):$$PATH" xargs -d '\n' -P 2 -I {} sh -c '{}'
+	$(BIN)/python -m reports.result_files reports/results/*.json
 	$(BIN)/python -m reports.results_page
 
 test: lint
