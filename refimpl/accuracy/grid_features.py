@@ -45,7 +45,8 @@ class GridFeatures:
     parts : uncertainties that the grid's own solution states (iteration, active set, neglected terms)
     faces : of the contact's edge by kind (`contact_edge`)
     depth : how far tractions pressed the contact in (m)
-    shear_to_normal_ratio : ``|c / a| tau A / N``: tau's displacement over the pressure's
+    shear_to_normal_ratio : ``|c / a| tau A / N``: tau's displacement over the pressure's; of a law that is
+        not linear all shear's
     plastic_edge : the like along the edge of the elements at the hardness (m^2)
     straight : edges of the contact along the grid
     plastic_straight : the like of the elements at the hardness
@@ -148,6 +149,8 @@ class GridFeatures:
         Approaches of periodic problems do not count from first contact.
         """
         grid, per_area = problem.grid, friction_per_area(problem.friction, state.forces.normal)
+        by_tau = per_area * state.contact_area
+        sheared = by_tau if problem.friction.is_linear else abs(state.friction_coefficient)
         parts, total = merged(*stated), float(state.pressure.sum()) * grid.element_area
         slopes_apart, slopes_in_phase = slope_sampling_error(state.pressure, state.slopes, grid)
         features = cls(
@@ -163,7 +166,7 @@ class GridFeatures:
             dmu_dA=per_area,
             parts=parts | {name: parts[raw] for name, raw in CORRECTED.items() if raw in parts},
             depth=depth(problem, state),
-            shear_to_normal_ratio=abs(problem.elasticity.coupling_ratio) * per_area * state.contact_area,
+            shear_to_normal_ratio=abs(problem.elasticity.coupling_ratio) * sheared,
             plastic_edge=state.plastic_area - perimeter_corrected_area(state.plastic, grid),
             straight=straight_edges(state.contact, grid),
             plastic_straight=straight_edges(state.plastic, grid),

@@ -13,7 +13,7 @@ import numpy as np
 
 from refimpl.model.certificate import State
 from refimpl.model.forces import contact_area
-from refimpl.model.friction import friction_per_area
+from refimpl.model.friction import FrictionLaw, friction_per_area
 from refimpl.model.problem import Problem
 
 CORRECTED = {
@@ -22,6 +22,7 @@ CORRECTED = {
     "friction_force_corrected": "friction_force",
 }
 """Numbers without the mean excess of the contact edge, by the number that it is subtracted from."""
+_SHEARED = "friction_coefficient", "friction_force"
 Parts = dict[str, float]
 Uncertainty = dict[str, Parts]
 
@@ -40,6 +41,16 @@ def reported_numbers(problem: Problem, state: State) -> dict[str, float]:
         "friction_force": state.forces.friction,
         "binormal_force": state.forces.binormal,
     }
+
+
+def without_rule(law: FrictionLaw) -> tuple[str, ...]:
+    """Return the numbers whose error bars no rule gives: what an element too many adds is known of tau alone.
+
+    Where ``r - slope f`` falls to zero with the pressure, errors along the contact's edge are of another
+    order.
+    """
+    corrected = tuple(name for name, raw in CORRECTED.items() if raw in _SHEARED)
+    return () if law.is_linear else (*_SHEARED, *corrected)
 
 
 def iteration_parts(problem: Problem, state: State) -> Uncertainty:
