@@ -9,8 +9,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from output.result_files import read_results
 from reports.evidence import gathered
-from reports.result_files import read_results
 from reports.result_tables.accuracy import accuracy_costs, costs, coverage
 from reports.result_tables.markdown import RUN
 from reports.result_tables.paper import claims, hertz, table_3

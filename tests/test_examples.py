@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from reports import result_files
+from output import result_files
 from tests.documents import ROOT, agree
 from verification.cases.appendix_a import half_space
 

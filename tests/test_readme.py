@@ -8,7 +8,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from reports.result_files import committed
+from output.result_files import committed
 from tests.documents import ROOT, blocks, commands, run
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")

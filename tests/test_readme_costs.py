@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from reports.result_files import committed
+from output.result_files import committed
 from tests.documents import ROOT
 from verification.benchmarks.codes import OWN, SHEARED, SLOPED
 from verification.benchmarks.page import EVERY, PEER, QUICKEST, Number, Ratios, Rows, newest, over, table

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from reports.result_files import FOLDER, SUFFIX, name_of, result_paths
+from output.result_files import FOLDER, SUFFIX, name_of, result_paths
 from tests.documents import ROOT
 
 MOST_BYTES = 500_000  # of a file

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from output.result_files import SUFFIX
 from reports.exhibit import Column, table
-from reports.result_files import SUFFIX
 from reports.results import Case
 
 RUN = "quick"

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from filelock import FileLock
 
+from output.result_files import read_results
 from reports.generator import render
-from reports.result_files import read_results
 from tests.documents import ROOT
 
 

@@ -6,11 +6,11 @@ from fnmatch import fnmatchcase
 
 import pytest
 
+from output.result_files import read_results
 from reports.agreement import SINGLE, TABLE3
 from reports.claims import NOT_ESTABLISHED, VERDICTS, judged, paper, parts
 from reports.evidence import gathered, groups
 from reports.findings import fields
-from reports.result_files import read_results
 from reports.results import ResultFileError, check, worst
 from reports.revisions import revisions_of
 from tests.documents import ROOT

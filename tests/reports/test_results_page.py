@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from reports.result_files import read_results
+from output.result_files import read_results
 from reports.result_tables.paper import table_3
 from reports.results_page import FOLDER, PAGE, page
 from tests.documents import ROOT

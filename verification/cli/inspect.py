@@ -7,6 +7,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from output.text_table import columns, wrapped
 from verification.cli.options import (
     Options,
     name_or_number,
@@ -15,7 +16,6 @@ from verification.cli.options import (
     output_file,
 )
 from verification.cli.output import PICTURES, StatusLine, check_outputs, check_suffix, emit, plain
-from verification.framework.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from refimpl import Inspection

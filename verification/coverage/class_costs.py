@@ -15,6 +15,9 @@ from typing import Any, Final
 import numpy as np
 
 import refimpl as rf
+from output.files import write_result
+from output.provenance import provenance
+from output.text_table import columns
 from refimpl.accuracy.refinement import GRID_SIZES
 from refimpl.driver.options import Options
 from refimpl.driver.refined import forecast
@@ -31,9 +34,6 @@ from verification.coverage.class_scenes import (
 )
 from verification.coverage.classes import REFERENCE, reference
 from verification.framework.case import jsonable
-from verification.framework.files import write_result
-from verification.framework.provenance import provenance
-from verification.framework.text_table import columns
 
 CORRECTED: Final = "friction_coefficient_corrected"
 SUMMED: Final = "friction_coefficient"

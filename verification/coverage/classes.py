@@ -15,6 +15,9 @@ import numpy as np
 from scipy import stats
 
 import refimpl as rf
+from output.files import write_result
+from output.provenance import provenance
+from output.text_table import columns
 from refimpl.accuracy.digits import LARGEST_SHARE
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.solution.quantities import error_bound
@@ -31,9 +34,6 @@ from verification.coverage.class_scenes import (
 )
 from verification.coverage.judge import EDGE_SIZE_BOUND
 from verification.framework.case import jsonable
-from verification.framework.files import write_result
-from verification.framework.provenance import provenance
-from verification.framework.text_table import columns
 
 GRIDS = (48, 64, 96, 128)
 REFERENCE = 512  # along the longer side

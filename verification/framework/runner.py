@@ -7,9 +7,9 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 
+from output.files import Progress
+from output.provenance import provenance
 from verification.framework.case import Result, Status, Tier
-from verification.framework.files import Progress
-from verification.framework.provenance import provenance
 from verification.framework.registry import CASES_PACKAGE, load, select
 from verification.framework.workers import run_all
 

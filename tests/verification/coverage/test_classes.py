@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from reports.result_files import committed, read_result
+from output.result_files import committed, read_result
 from tests.documents import ROOT
 from verification.coverage import class_costs, classes
 from verification.coverage.class_costs import SIZES, costs

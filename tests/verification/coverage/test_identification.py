@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
+from output.result_files import committed
 from refimpl import Scene
-from reports.result_files import committed
 from verification.coverage import synthetic_tables
 from verification.coverage.identification import BIAS, LEVEL, SETS, TableSet, fitted, study, summary
 from verification.coverage.synthetic_tables import (

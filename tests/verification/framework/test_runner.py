@@ -12,7 +12,8 @@ from typing import Any
 
 import pytest
 
-from verification.framework import files, provenance, runner, workers
+from output import files, provenance
+from verification.framework import runner, workers
 from verification.framework.case import Case, Measured, Metric, Result, Status, Tier
 
 Make = Callable[..., str]

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 import refimpl as rf
-from reports.result_files import read_result
+from output.result_files import read_result
 from tests.changed import changed
 from tests.layers import ROOT
 from verification.properties import INVARIANTS, check_solver, nightly

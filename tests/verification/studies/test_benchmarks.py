@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from reports.result_files import read_result
+from output.result_files import read_result
 from verification.benchmarks import overhead, rounds
 from verification.benchmarks.__main__ import main
 from verification.benchmarks.codes import ALONE, OWN, SHEARED, SLOPED, codes

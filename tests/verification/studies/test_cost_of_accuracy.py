@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import refimpl as rf
-from reports.result_files import committed, read_result
+from output.result_files import committed, read_result
 from reports.studies.accuracy_costs import build
 from tests.changed import changed
 from verification.benchmarks import cost_of_accuracy

@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import dblquad
 
 import refimpl as rf
-from reports.result_files import committed
+from output.result_files import committed
 from verification.cases.appendix_a.fem3d_answer import STEEPEST
 from verification.cases.paper.contact import FIG6_TOLERANCE
 from verification.framework import registry

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from output.result_files import committed, read_result
 from refimpl.operators.fft import FFTInfluence
-from reports.result_files import committed, read_result
 from tests.changed import changed
 from verification.cases.solvers.stress_tests import counted
 from verification.exact.dense_influence import DenseInfluence

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from reports.result_files import committed
+from output.result_files import committed
 from verification.cases import Measured, family
 from verification.experiments.comparison import Point
 from verification.experiments.predictions import points
