@@ -15,9 +15,6 @@ from typing import Any, Final
 import numpy as np
 
 import refimpl as rf
-from output.files import write_result
-from output.provenance import provenance
-from output.text_table import columns
 from refimpl.accuracy.refinement import GRID_SIZES
 from refimpl.driver.options import Options
 from refimpl.driver.refined import forecast
@@ -34,6 +31,9 @@ from verification.coverage.class_scenes import (
 )
 from verification.coverage.classes import REFERENCE, reference
 from verification.framework.case import jsonable
+from verification.output.files import write_result
+from verification.output.provenance import provenance
+from verification.output.text_table import columns
 
 CORRECTED: Final = "friction_coefficient_corrected"
 SUMMED: Final = "friction_coefficient"

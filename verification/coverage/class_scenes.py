@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 
 import refimpl as rf
-from output.files import Progress
 from refimpl.grid import Array
 from refimpl.model.materials import Pair
 from verification.coverage.drawing import SIDE, Ball, Dice, Wave, measured_like
+from verification.output.files import Progress
 
 RMS = 1e-7  # m
 

@@ -15,9 +15,6 @@ import numpy as np
 from scipy import stats
 
 import refimpl as rf
-from output.files import write_result
-from output.provenance import provenance
-from output.text_table import columns
 from refimpl.accuracy.digits import LARGEST_SHARE
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.solution.quantities import error_bound
@@ -34,6 +31,9 @@ from verification.coverage.class_scenes import (
 )
 from verification.coverage.judge import EDGE_SIZE_BOUND
 from verification.framework.case import jsonable
+from verification.output.files import write_result
+from verification.output.provenance import provenance
+from verification.output.text_table import columns
 
 GRIDS = (48, 64, 96, 128)
 REFERENCE = 512  # along the longer side

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import refimpl as rf
-from output.files import Progress
 from refimpl.accuracy.contact_edge import EdgeOffset
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.peak import Peak
@@ -19,6 +18,7 @@ from refimpl.accuracy.refinement import FIRST_GRIDS, longer_side
 from refimpl.grid.straight_edges import StraightEdges
 from refimpl.model.friction import FrictionLaw, is_frictionless
 from verification.coverage.scenes import random_scene
+from verification.output.files import Progress
 
 NUMBERS = ("friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure")
 FINEST = 512  # elements per side that may be requested; beyond are references
