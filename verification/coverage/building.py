@@ -17,12 +17,12 @@ from refimpl.accuracy.contact_edge import NO_FACES
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.errors import InputError
 from refimpl.model.materials import Pair
-from reports.result_files import read_result
 from verification.coverage.class_scenes import CLASSES, GRIDS, scene
 from verification.coverage.store import features_of
 from verification.coverage.textures import RoundedPunch
-from verification.framework.files import Progress, write_result
-from verification.framework.provenance import provenance
+from verification.output.files import Progress, write_result
+from verification.output.provenance import provenance
+from verification.output.result_files import read_result
 
 REFERENCE = 384  # elements along the longer side
 WAVES = "short waves"  # part of an error bar

@@ -15,7 +15,7 @@ from refimpl.grid import Array
 from refimpl.model.materials import Pair
 from verification.coverage.drawing import SIDE, Ball, Dice, Wave, measured_like
 from verification.coverage.textures import Profile, RoundedPunch, Spots
-from verification.framework.files import Progress
+from verification.output.files import Progress
 
 RMS = 1e-7  # m
 GRIDS = 48, 64, 96, 128  # elements along the longer side of the grids that are judged

@@ -28,9 +28,9 @@ from verification.coverage.building import Solved, pack, solve_all, solved, unpa
 from verification.coverage.class_scenes import CLASSES
 from verification.coverage.likelihood import Fitted, fit
 from verification.framework.case import jsonable
-from verification.framework.files import write_result
-from verification.framework.provenance import provenance
-from verification.framework.text_table import columns
+from verification.output.files import write_result
+from verification.output.provenance import provenance
+from verification.output.text_table import columns
 
 CONSTANTS = Path("refimpl/data/error_bars.json")
 FEATURES = Path("reports/results/error_bar_features.json.gz")  # of the building scenes

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from reports.result_files import committed
 from tests.documents import ROOT
 from tests.refimpl.accuracy.made_up import AREA_LIMIT, BETA, DMU_DA, made_up
 from verification.coverage import class_costs, classes
 from verification.coverage.building import Solved, as_corrected
 from verification.coverage.class_costs import SIZES, costs
 from verification.coverage.class_scenes import CLASSES, scene
+from verification.output.result_files import committed
 
 MU = BETA + DMU_DA * AREA_LIMIT
 
