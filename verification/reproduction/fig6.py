@@ -13,7 +13,7 @@ from verification.reproduction.ensemble import CONFIDENCE
 from verification.reproduction.printed import CORRELATION_LENGTH
 from verification.reproduction.table1 import RADIUS, SMOOTH, hertz, rough
 
-RINGS = 16  # of equal area, to half the side of the domain: the innermost is a disc of 0.45 Hertz radii
+RINGS = 16  # rings of equal area, to half the side of the domain; the innermost is a disc of 0.45 Hertz radii
 RESAMPLES, RESAMPLING_SEED = 4000, 6
 NO_FRICTION = rf.Friction()
 
