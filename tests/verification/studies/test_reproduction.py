@@ -10,10 +10,10 @@ import pytest
 from scipy.integrate import dblquad
 
 import refimpl as rf
-from reports.result_files import committed
 from verification.cases.appendix_a.fem3d_answer import STEEPEST
 from verification.cases.paper.contact import FIG6_TOLERANCE
 from verification.framework import registry
+from verification.output.result_files import committed
 from verification.reproduction import ensemble, fig6, fig8, slides, table3
 from verification.reproduction.printed import FIG6_RMS, MESHES, SIDE, TABLE2, TABLE3
 from verification.reproduction.table1 import SMOOTH, hertz, rough
