@@ -283,6 +283,21 @@ def test_an_unknown_spelling_that_begins_like_a_comment_is_refused(tmp_path: Pat
         read_table(tmp_path / "a.txt")
 
 
+@pytest.mark.parametrize("separator", [",", "\t", ";", " "])
+@pytest.mark.parametrize("late", ["1.002", "0.02", "1.5"])
+def test_marks_that_may_be_of_thousands_are_judged_by_all_rows(
+    tmp_path: Path, separator: str, late: str
+) -> None:
+    """998, then 1.002 far below: a thousand and two as well as one; 0.02 in any row tells."""
+    rows = [["998", "1.120", "995", "987"]] * 90 + [["997", "1.118", late, "985"]]
+    (tmp_path / "a.txt").write_text("\n".join(map(separator.join, rows)))
+    if late != "1.002":
+        assert read_table(tmp_path / "a.txt").rows[-1].tolist() == [997, 1.118, float(late), 985]
+        return
+    with pytest.raises(InputError, match=r"is '1\.120' a thousand times as much"):
+        read_table(tmp_path / "a.txt")
+
+
 @pytest.mark.parametrize(
     ("mark", "size", "noted"), [(-9999, 1, True), (-999, 300, True), (-1e6, 1, True), (-4, 1, False)]
 )
