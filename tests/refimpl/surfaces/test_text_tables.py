@@ -229,6 +229,20 @@ def test_labels_and_what_stands_above_a_table(
         read_table(tmp_path / "a.csv")
 
 
+@pytest.mark.parametrize("side", ["first row", "first column"])
+def test_uneven_coordinates_alone_are_refused(tmp_path: Path, side: str) -> None:
+    """Ten of them or more that rise steadily, beside heights that do not."""
+    rng = np.random.default_rng(5)
+    z = rng.normal(size=(14, 13))
+    at = np.cumsum(rng.uniform(0.5, 2.0, 14))[::-1]
+    np.savetxt(tmp_path / "plain.csv", z, fmt="%.3f", delimiter=",")
+    assert read_table(tmp_path / "plain.csv").rows.shape == (14, 13)
+    table = np.column_stack([at, z])
+    np.savetxt(tmp_path / "a.csv", table.T if side == "first row" else table, fmt="%.3f", delimiter=",")
+    with pytest.raises(InputError, match=f"heights without their coordinates .*{side}"):
+        read_table(tmp_path / "a.csv")
+
+
 def test_a_text_of_two_images_gives_either(tmp_path: Path) -> None:
     write.write_txt(tmp_path / "one.txt", MAP)
     one = (tmp_path / "one.txt").read_bytes().decode("latin-1")
