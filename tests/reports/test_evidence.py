@@ -10,12 +10,12 @@ from reports.agreement import SINGLE, TABLE3
 from reports.claims import NOT_ESTABLISHED, VERDICTS, judged, paper, parts
 from reports.evidence import gathered, groups
 from reports.findings import fields
-from reports.result_files import read_results
 from reports.results import ResultFileError, check, worst
 from reports.revisions import revisions_of
 from tests.documents import ROOT
 from tests.reports.sample import ERRATUM, case, results
 from verification.framework.registry import load
+from verification.output.result_files import read_results
 
 
 def dated(date: str, *cases: dict, **other: object) -> dict:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from verification.cli.options import Options, option, output_file
 from verification.cli.output import check_outputs, emit, refusal, show
-from verification.framework.text_table import columns
+from verification.output.text_table import columns
 
 if TYPE_CHECKING:
     from refimpl.scene.keys import Key
@@ -33,7 +33,7 @@ OPTIONS: Options = {
 
 def run(options: argparse.Namespace) -> int:
     """Print the keys; status 1 where none has the word."""
-    from verification.framework.files import write_text
+    from verification.output.files import write_text
 
     check_outputs((), markdown=options.markdown, json=options.json)
     if options.markdown is not None:

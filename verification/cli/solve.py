@@ -30,8 +30,8 @@ from verification.cli.output import (
     refusal,
 )
 from verification.cli.solve_table import document, not_usable, show_finished, table
-from verification.framework.files import is_stream
-from verification.framework.text_table import wrapped
+from verification.output.files import is_stream
+from verification.output.text_table import wrapped
 
 if TYPE_CHECKING:
     from refimpl import Scene, Solution

@@ -31,9 +31,9 @@ from verification.coverage.class_scenes import (
 )
 from verification.coverage.classes import REFERENCE, reference
 from verification.framework.case import jsonable
-from verification.framework.files import write_result
-from verification.framework.provenance import provenance
-from verification.framework.text_table import columns
+from verification.output.files import write_result
+from verification.output.provenance import provenance
+from verification.output.text_table import columns
 
 CORRECTED: Final = "friction_coefficient_corrected"
 SUMMED: Final = "friction_coefficient"

@@ -14,7 +14,7 @@ import refimpl as rf
 from refimpl.grid import Array
 from refimpl.model.materials import Pair
 from verification.coverage.drawing import SIDE, Ball, Dice, Wave, measured_like
-from verification.framework.files import Progress
+from verification.output.files import Progress
 
 RMS = 1e-7  # m
 

@@ -31,9 +31,9 @@ from verification.coverage.class_scenes import (
 )
 from verification.coverage.judge import EDGE_SIZE_BOUND
 from verification.framework.case import jsonable
-from verification.framework.files import write_result
-from verification.framework.provenance import provenance
-from verification.framework.text_table import columns
+from verification.output.files import write_result
+from verification.output.provenance import provenance
+from verification.output.text_table import columns
 
 GRIDS = (48, 64, 96, 128)
 REFERENCE = 512  # along the longer side

@@ -18,7 +18,7 @@ from refimpl.accuracy.refinement import FIRST_GRIDS, longer_side
 from refimpl.grid.straight_edges import StraightEdges
 from refimpl.model.friction import FrictionLaw, is_frictionless
 from verification.coverage.scenes import random_scene
-from verification.framework.files import Progress
+from verification.output.files import Progress
 
 NUMBERS = ("friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure")
 FINEST = 512  # elements per side that may be requested; beyond are references

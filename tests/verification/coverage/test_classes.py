@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from reports.result_files import committed, read_result
 from tests.documents import ROOT
 from verification.coverage import class_costs, classes
 from verification.coverage.class_costs import SIZES, costs
 from verification.coverage.class_scenes import CLASSES, scene
+from verification.output.result_files import committed, read_result
 
 
 def test_references_known_values() -> None:
