@@ -32,8 +32,8 @@ def table_3(reproduction: Mapping[str, Any]) -> str:
     )  # fmt: skip
     text = (
         "Table 1's ball on a flat under 70 N, as printed in the paper and as computed here: means over "
-        "random surfaces. Columns are named by the half-space's rms roughness, as in the paper. The interval is "
-        "of the mean."
+        "random surfaces. Columns are named by the half-space's rms roughness, as in the paper. The interval "
+        "is of the mean."
     )
     return section("Table 3 of the paper", text, head, rows)
 
