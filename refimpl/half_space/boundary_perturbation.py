@@ -101,7 +101,7 @@ class _Body:
         kx = np.where(np.abs(kx) < np.pi / dx * (1 - 1e-12), kx, 0.0)
         ky = np.where(np.abs(ky) < np.pi / dy * (1 - 1e-12), ky, 0.0)
         self.over_square = self.over_square.astype(self.real)
-        self.ik = tuple(1j * k.astype(self.real) for k in (kx, ky))
+        self.ik = tuple(np.multiply(1j, k.astype(self.real)) for k in (kx, ky))
         E, nu = material.E, material.nu
         self.modulus = E
         self.coupling = (1 + nu) * (1 - 2 * nu) / E
