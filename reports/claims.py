@@ -6,6 +6,7 @@ import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
+from functools import cache
 from importlib import resources
 from itertools import pairwise
 from typing import Any
@@ -15,12 +16,15 @@ from reports.findings import MISSING, by_claim, filled, note
 from reports.results import Case, worst
 
 NOT_ESTABLISHED = "not established"
+ERRATUM, PRINT = "erratum proposed", "print or conversion"
+CONDITIONAL = "confirmed with conditions"
 VERDICTS = (
     NOT_ESTABLISHED,
     "not confirmed",
-    "erratum proposed",
+    ERRATUM,
+    PRINT,
     ROUNDED,
-    "confirmed with conditions",
+    CONDITIONAL,
     "confirmed",
     "by construction",
     "definition",
@@ -42,6 +46,7 @@ class Claim:
     holds: Sequence[str] = ()
     corrected: Sequence[str] = ()
     finding: str = ""
+    condition: str = ""
     own: bool = False
     part: str = ""
 
@@ -83,6 +88,7 @@ def parts() -> list[Part]:
     return [Part(**entry) for entry in entries("part")]
 
 
+@cache
 def of_the_conversion() -> frozenset[str]:
     """Errata that may be faults of the text's conversion from print, by equation."""
     text = resources.files("reports").joinpath("paper.toml").read_text(encoding="utf-8")
@@ -116,10 +122,12 @@ def _judged(
     found = [c for c in known if any(fnmatchcase(c["id"], pattern) for pattern in claim.evidence)]
     said = next((note(case) for case in found if recorded(case) is not None), "")
     finding = filled(claim.finding, by_name) or said
+    finding = said if MISSING in finding and said else finding
+    verdict = _verdict(claim, found, by_name, groups)
     return Judged(
         claim,
-        _verdict(claim, found, by_name, groups),
-        said if MISSING in finding and said else finding,
+        verdict,
+        f"{finding}. Condition: {claim.condition}" if verdict == CONDITIONAL else finding,
         found,
         [corrections[name] for name in claim.corrected if name in corrections],
     )
@@ -140,7 +148,8 @@ def _verdict(
     given += [ascending(filled(text, by_name)) for text in claim.holds]
     if not claim.own:
         given += [v for v in map(recorded, cases) if v is not None]
-    return min(given, key=VERDICTS.index, default=NOT_ESTABLISHED)
+    verdict = min(given, key=VERDICTS.index, default=NOT_ESTABLISHED)
+    return PRINT if verdict == ERRATUM and of_the_conversion().issuperset(claim.corrected) else verdict
 
 
 def ascending(text: str) -> str:

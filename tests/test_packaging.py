@@ -19,7 +19,7 @@ from tests.documents import ROOT
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 DATA: dict[str, list[str]] = PROJECT["tool"]["setuptools"]["package-data"]
-PACKAGES = ("refimpl", "appendix_a", "verification", "reports", "output")
+PACKAGES = ("refimpl", "appendix_a", "verification", "reports")
 
 
 @pytest.mark.parametrize("package", PACKAGES)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from output.result_files import SUFFIX
 from reports.exhibit import Column, table
 from reports.results import Case
+from verification.output.result_files import SUFFIX
 
 RUN = "quick"
 """The run that the report is made of; the other files are beside it."""

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from filelock import FileLock
 
-from output.result_files import read_results
 from reports.generator import render
 from tests.documents import ROOT
+from verification.output.result_files import read_results
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,6 @@ from fnmatch import fnmatchcase
 
 import pytest
 
-from output.result_files import read_results
 from reports.agreement import SINGLE, TABLE3
 from reports.claims import NOT_ESTABLISHED, VERDICTS, judged, paper, parts
 from reports.evidence import gathered, groups
@@ -16,6 +15,7 @@ from reports.revisions import revisions_of
 from tests.documents import ROOT
 from tests.reports.sample import ERRATUM, case, results
 from verification.framework.registry import load
+from verification.output.result_files import read_results
 
 
 def dated(date: str, *cases: dict, **other: object) -> dict:

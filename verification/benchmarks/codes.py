@@ -13,7 +13,6 @@ from functools import partial
 import numpy as np
 
 import refimpl as rf
-from output.provenance import DISTRIBUTION, versions
 from refimpl.driver.options import Options
 from refimpl.grid import Array
 from refimpl.model.friction import is_frictionless
@@ -24,6 +23,7 @@ from refimpl.solvers.production.nested_solver import solve_fft
 from verification.adapters import aspher, contactmechanics, tamaas
 from verification.adapters.published_code import PublishedCode
 from verification.benchmarks.problems import FRICTION, problem, scene
+from verification.output.provenance import DISTRIBUTION, versions
 
 OWN = "refimpl"
 ALONE = f"{OWN}-solver"

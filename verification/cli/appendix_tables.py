@@ -8,9 +8,9 @@ from functools import cache
 from importlib.resources import as_file, files
 from typing import TYPE_CHECKING
 
-from output.text_table import columns
 from verification.cli.options import Options, number, option
 from verification.cli.output import emit, refusal
+from verification.output.text_table import columns
 
 if TYPE_CHECKING:
     from appendix_a.fem.coefficient_map import CoefficientMap

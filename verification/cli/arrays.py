@@ -34,9 +34,9 @@ def write_npz(solution: Solution, path: Path) -> None:
     """
     import numpy as np
 
-    from output.files import replacing, to_json
     from refimpl.solution.arrays import attributes_of, fields_of
     from verification.cli.output import plain
+    from verification.output.files import replacing, to_json
 
     fields = fields_of(solution)
     units = {name: field.unit for name, field in fields.items()}
@@ -52,8 +52,8 @@ def write_netcdf(solution: Solution, path: Path) -> None:
     """Write the `xarray.Dataset` of `Solution.to_xarray` with the provenance among its attributes."""
     from tempfile import TemporaryDirectory
 
-    from output.files import replacing
     from refimpl.solution.arrays import as_dataset
+    from verification.output.files import replacing
 
     # a folder of its own: HDF5 locks the file that it writes, and `replacing` holds a lock on its own
     with TemporaryDirectory() as folder:
@@ -67,8 +67,8 @@ def write_patches(solution: Solution, path: Path) -> None:
     """Write a row for each contact patch, units in the headers."""
     from dataclasses import astuple, fields
 
-    from output.files import write_text
     from refimpl.solution.patches import Patch
+    from verification.output.files import write_text
 
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
@@ -88,7 +88,7 @@ def write_vtk(solution: Solution, path: Path) -> None:
     import meshio
     import numpy as np
 
-    from output.files import replacing
+    from verification.output.files import replacing
 
     x, y = np.meshgrid(solution.grid.x, solution.grid.y, indexing="ij")
     sheets = [np.column_stack([x.ravel(), y.ravel(), z.ravel()])
@@ -112,6 +112,6 @@ WRITERS = {"vtk": write_vtk, "npz": write_npz, "netcdf": write_netcdf, "patches"
 
 
 def _provenance() -> dict[str, str]:
-    from output.provenance import provenance
+    from verification.output.provenance import provenance
 
     return {f"provenance_{name}": str(value) for name, value in provenance().items()}

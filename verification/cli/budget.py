@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from output.text_table import columns, wrapped
 from refimpl.accuracy.digits import bar_of, digits_of
 from refimpl.solution.quantities import QUANTITIES
 from refimpl.solution.units import printed_unit
+from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from refimpl.sensitivities.budget import Budget, Budgets

@@ -9,10 +9,10 @@ import math
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from output.text_table import columns
 from refimpl.half_space.warning import ALLOWED, expected_error
 from refimpl.scene.discretise import discretise
 from refimpl.scene.resolution import resolution
+from verification.output.text_table import columns
 
 if TYPE_CHECKING:
     from refimpl.driver.options import Options

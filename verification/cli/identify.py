@@ -7,7 +7,6 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from output.text_table import columns, wrapped
 from verification.cli.grids import DEFAULT_TEXT, default_grid
 from verification.cli.options import (
     SCENE,
@@ -18,6 +17,7 @@ from verification.cli.options import (
     output_file,
 )
 from verification.cli.output import PICTURES, StatusLine, check_outputs, check_suffix, emit, files_of
+from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from refimpl.identification import Identification, Interval
@@ -49,10 +49,10 @@ OPTIONS: Options = {
 
 def run(options: argparse.Namespace) -> int:
     """Read, fit and show. Raises InputError and ArithmeticError as `refimpl.identification.identify` does."""
-    from output.provenance import provenance
     from refimpl.identification import identify, read_rows
     from refimpl.scene.scene_file import read_scene, read_tolerances
     from verification.cli.identify_store import SolveStore, key
+    from verification.output.provenance import provenance
 
     check_suffix("--plot", options.plot, PICTURES)
     scene, tolerances = read_scene(options.scene), read_tolerances(options.scene)

@@ -7,7 +7,6 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from output.text_table import columns, wrapped
 from verification.cli.options import (
     Options,
     name_or_number,
@@ -16,6 +15,7 @@ from verification.cli.options import (
     output_file,
 )
 from verification.cli.output import PICTURES, StatusLine, check_outputs, check_suffix, emit, plain
+from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from refimpl import Inspection

@@ -9,8 +9,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from output.files import is_stream
-from output.text_table import wrapped
 from verification.cli.grids import DEFAULT_TEXT, default_grid
 from verification.cli.options import (
     Options,
@@ -32,6 +30,8 @@ from verification.cli.output import (
     refusal,
 )
 from verification.cli.solve_table import document, not_usable, show_finished, table
+from verification.output.files import is_stream
+from verification.output.text_table import wrapped
 
 if TYPE_CHECKING:
     from refimpl import Scene, Solution
@@ -150,7 +150,7 @@ def run(options: argparse.Namespace) -> int:
         show_finished(interrupt, options.scene)
         raise
     _write_files(solution, scene, options)
-    found = document(solution, options.scene)
+    found = document(solution, options.scene) if options.json else {}
     text = table(solution, options.scene, waited=time.perf_counter() - began)
     if tolerances or options.budget:
         text = _with_budget(scene, solution, tolerances, options, found, text)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from output.text_table import columns, wrapped
 from verification.cli.output import judgement
+from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -7,11 +7,11 @@ import os
 import time
 from typing import TYPE_CHECKING, Any
 
-from output.text_table import columns
 from verification.cli import suite_report, suite_table
 from verification.cli.options import Options, declare, option, output_file
 from verification.cli.output import check_suffix, emit, refusal, select_or_refuse
 from verification.cli.suite_report import Judged
+from verification.output.text_table import columns
 
 if TYPE_CHECKING:
     from verification.framework.case import Result
@@ -86,8 +86,8 @@ def chosen(options: argparse.Namespace) -> bool:
 
 def run(options: argparse.Namespace) -> int:
     """Run or list the suite; status 1 when a case failed or broke, or none passed."""
-    from output.files import write_text
     from verification.framework.case import readable
+    from verification.output.files import write_text
     from verification.solver_suite import convergence, suite
     from verification.solver_suite.process import Ended
 
@@ -124,8 +124,8 @@ def _judged(
     source: Source,
 ) -> Judged:
     """Judge the solver case by case; an end by a signal keeps the verdicts so far."""
-    from output.files import Progress
     from refimpl.operating_system import END_SIGNALS
+    from verification.output.files import Progress
     from verification.solver_suite import isolated
     from verification.solver_suite.process import Ended, unwinding
 

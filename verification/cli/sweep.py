@@ -8,7 +8,6 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from output.text_table import columns, wrapped
 from verification.cli.options import Options, option, output_file, output_text
 from verification.cli.output import (
     PICTURES,
@@ -20,6 +19,7 @@ from verification.cli.output import (
     plain,
     refusal,
 )
+from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from verification.sweep.engine import Progress, Sweep
@@ -154,7 +154,7 @@ def _check_suffixes(**written: Path | None) -> None:
 
 def _export(options: argparse.Namespace, done: Sweep, store: Path) -> None:
     """Write and show what was asked for; the rows take the table's place on standard output."""
-    from output.provenance import provenance
+    from verification.output.provenance import provenance
     from verification.sweep import export
 
     table = _table(done, store)

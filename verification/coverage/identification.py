@@ -21,8 +21,6 @@ from typing import Any
 import numpy as np
 from scipy.stats import norm
 
-from output.files import Progress, write_result
-from output.provenance import provenance
 from refimpl.errors import InputError
 from refimpl.identification import Identification, identify
 from refimpl.identification.forward import COVERAGE
@@ -36,6 +34,8 @@ from verification.coverage.synthetic_tables import (
     yielding_table,
 )
 from verification.framework.case import jsonable
+from verification.output.files import Progress, write_result
+from verification.output.provenance import provenance
 
 LEVEL = 0.92  # share of 95 % intervals that must cover, at least
 BIAS = 0.2  # mean error of tau in its standard uncertainties, at most

@@ -18,12 +18,12 @@ from typing import Any
 import numpy as np
 
 import refimpl as rf
-from output.files import to_json, write_text
-from output.provenance import provenance
 from refimpl.grid import Array, Mask
 from verification.enclosures.proof import BITS, Ball, Proof
 from verification.enclosures.scenes import SIDE, EnclosedScene
 from verification.exact.kernel_reference import arb
+from verification.output.files import to_json, write_text
+from verification.output.provenance import provenance
 
 FORMAT = "rough-friction golden scene, version 1"
 _EPS = float(np.finfo(float).eps)

@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import asdict
 from typing import Any
 
-from output.provenance import provenance
 from refimpl.operating_system import processor_time
 from verification.framework.case import jsonable
+from verification.output.provenance import provenance
 from verification.stress_tests import conditioning, precision, uniqueness
 from verification.stress_tests.axes import AXES, states
 from verification.stress_tests.limits import LIMITS

@@ -9,10 +9,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from output.files import replacing, write_text
 from refimpl.errors import InputError
 from refimpl.scene.key_texts import FRICTION, MATERIAL, SCENE, SURFACES
 from refimpl.solution.quantities import QUANTITIES
+from verification.output.files import replacing, write_text
 from verification.sweep.run import Row
 from verification.sweep.store import COLUMNS
 

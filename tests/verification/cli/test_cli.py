@@ -13,7 +13,6 @@ from pathlib import Path
 import pytest
 
 import refimpl
-from output.text_table import WIDTH, columns
 from refimpl.planning.plan import METHODS
 from refimpl.solution.quantities import TARGETS
 from reports.generator import render
@@ -24,6 +23,7 @@ from verification.cli import main, parser, solve, verify
 from verification.cli.output import StatusLine, judgement
 from verification.framework import registry, runner
 from verification.framework.case import Case, Measured, Metric, Status, Tier
+from verification.output.text_table import WIDTH, columns
 
 QUICK = "kernels/love-at-centre"
 

@@ -18,12 +18,12 @@ from pathlib import Path
 
 import pytest
 
-from output import files
 from refimpl.solvers.production.projected_cg import ProjectedCG
 from tests.reports import sample
 from tests.verification.cli.children import LONG, Ended, forked, one_line, started
 from tests.verification.cli.commands import run
 from verification.cli import main, solve
+from verification.output import files
 
 resource = pytest.importorskip("resource", reason="signals and limits of POSIX")
 START = (

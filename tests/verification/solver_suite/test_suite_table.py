@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from output.provenance import versions
 from tests.documents import ROOT
 from verification.cli import main, suite_table
+from verification.output.provenance import versions
 from verification.solver_suite import identity
 from verification.solver_suite.suite import VERSION, suite
 from verification.solver_suite.suite import identity as of_suite

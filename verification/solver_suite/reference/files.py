@@ -19,8 +19,8 @@ from typing import Any
 
 import numpy as np
 
-from output.provenance import DISTRIBUTION, ROOT, versions
 from refimpl.errors import InputError
+from verification.output.provenance import DISTRIBUTION, ROOT, versions
 from verification.solver_suite import suite
 from verification.solver_suite.command import header_of
 from verification.solver_suite.reference import certified
