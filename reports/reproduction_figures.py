@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure as Canvas
 
+from reports.agreement import column_of
 from reports.drawing import COLOURS, INK, MARKERS, Data, Figure, curves, look, maps
 
 DASHED, DOTTED, DASH_DOT = "--", ":", "-."
@@ -35,7 +36,7 @@ def _table3(canvas: Canvas, data: Data) -> None:
     for k, sigma in enumerate(np.unique(rms)):
         here = rms == sigma
         x = np.log2(mesh[here]) + 0.06 * (k - 1.5)
-        label = f"$\\sigma_e$ = {sigma:.3g} µm"
+        label = column_of(sigma)
         axes.errorbar(x, ratio[here], half[here], label=label, capsize=3, **look(k))
     axes.axhline(1.0, color=INK, linestyle=DASHED)
     meshes = np.unique(mesh)

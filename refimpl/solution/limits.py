@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from refimpl.accuracy.iteration_error import without_rule
 from refimpl.grid import Grid
 from refimpl.grid.contact_patches import patch_sizes
 from refimpl.half_space.influence_error import SlopeError, constant_along_an_axis, slope_error
@@ -102,6 +103,7 @@ def model_warnings(evidence: Evidence) -> tuple[ModelWarning | Notice, ...]:
         _active_set(evidence),
         *_neglected(evidence),
         *_plastic_notes(evidence),
+        _law(evidence),
         _adhesion(evidence),
     )
     return tuple(warning for warning in found if warning is not None)
@@ -190,6 +192,12 @@ def _shear(evidence: Evidence) -> ModelWarning | None:
         "flows and junctions grow, which no error bar includes"
     )
     return ModelWarning(Limit.SHEAR, largest, strength, text)
+
+
+def _law(evidence: Evidence) -> Notice | None:
+    law = evidence.problem.friction
+    text = f"{type(law).__name__} is not r = tau + beta f: no rule gives error bars of mu and F"
+    return Notice(text) if without_rule(law) else None
 
 
 def _adhesion(evidence: Evidence) -> Notice | None:
@@ -290,7 +298,8 @@ def _correlation(evidence: Evidence) -> ModelWarning | None:
     missed = f"; the grid misses {detail.missed}" if detail.missed else ""
     text = (
         f"{found.elements:.2g} elements per {detail.name}, {detail.length:.3g} m: "
-        f"slopes of the roughness are not resolved below {detail.resolved:.0f}{missed}"
+        f"slopes of the roughness are not resolved below {detail.resolved:.0f}{missed}; A, and mu by the "
+        "share of tau, come out too large"
     )
     return ModelWarning(Limit(detail.name), found.elements, detail.resolved, text)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from verification.cli.options import Options, option
 from verification.cli.output import check_outputs, emit
-from verification.framework.text_table import columns
+from verification.output.text_table import columns
 
 if TYPE_CHECKING:
     from refimpl.scene.keys import Key

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from verification.cli.output import plain
-from verification.framework.text_table import columns, wrapped
+from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from refimpl import Solution
@@ -36,7 +36,7 @@ def show_finished(interrupt: KeyboardInterrupt, scene: str) -> None:
 
 def document(solution: Solution, scene: str) -> dict[str, object]:
     """The JSON of a solve: SI units and the names of `refimpl.Solution`; arrays are for the VTK file."""
-    from verification.framework.provenance import provenance
+    from verification.output.provenance import provenance
 
     summary = {key: plain(value) for key, value in solution.summary().items()}
     return {"scene": scene, **summary, "not_usable": not_usable(solution), "provenance": provenance()}
