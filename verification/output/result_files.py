@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-FOLDER = Path(__file__).parents[1] / "reports" / "results"
+FOLDER = Path(__file__).parents[2] / "reports" / "results"
 """The committed result files."""
 SUFFIX = ".json.gz"
 _MAGIC = b"\x1f\x8b"  # first bytes of a gzip file (RFC 1952)
