@@ -158,7 +158,7 @@ def _restored(record: dict[str, Any]) -> GridFeatures:
     faces = [0.0] * len(NO_FACES)
     for k, n in record["faces"]:
         faces[k] = n
-    return as_corrected(features_of(record | {"faces": faces}))
+    return features_of(record | {"faces": faces})
 
 
 def as_corrected(features: GridFeatures) -> GridFeatures:
