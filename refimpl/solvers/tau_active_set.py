@@ -53,14 +53,11 @@ ContactTest = Callable[[Mask], bool]
 
 
 class ActiveSet(Protocol):
-    """Elements under tau; ``clearance()`` is ``v - approach`` of the present state (m).
-
-    is_fixed : whether shares of tau do not depend on the state
-    """
+    """Elements under tau; ``clearance()`` is ``v - approach`` of the present state (m)."""
 
     @property
     def is_fixed(self) -> bool:
-        """See above."""
+        """Whether shares of tau do not depend on the state."""
 
     def traction(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
         """Return r (Pa)."""
@@ -120,34 +117,27 @@ def first_set(problem: Problem) -> FixedSet | GradualSet:
 
 
 class TauSolver(Protocol):
-    """Interface of a solver, as the loop needs it: states with tau on a given active set.
-
-    operator : influence between the elements
-    pressure : present pressure (Pa)
-    stagnated : the last solve did not converge
-    exhausted : no further solve is worthwhile: slopes diverged, or the solver's budget is spent
-    window_too_small : the contact meets the edge of the solver's window
-    """
+    """Interface of a solver, as the loop needs it: states with tau on a given active set."""
 
     @property
     def operator(self) -> Influence:
-        """See above."""
+        """Influence between the elements."""
 
     @property
     def pressure(self) -> Array:
-        """See above."""
+        """Present pressure (Pa)."""
 
     @property
     def stagnated(self) -> bool:
-        """See above."""
+        """Whether the last solve did not converge."""
 
     @property
     def exhausted(self) -> bool:
-        """See above."""
+        """Whether no further solve is worthwhile: slopes diverged, or the solver's budget is spent."""
 
     @property
     def window_too_small(self) -> bool:
-        """See above."""
+        """Whether the contact meets the edge of the solver's window."""
 
     @property
     def contact(self) -> Mask:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from refimpl.accuracy.digits import bar_of, digits_of
 from refimpl.solution.quantities import QUANTITIES
 from refimpl.solution.units import printed_unit
-from verification.framework.text_table import columns, wrapped
+from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from refimpl.sensitivities.budget import Budget, Budgets

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from refimpl.half_space.warning import ALLOWED, expected_error
 from refimpl.scene.discretise import discretise
 from refimpl.scene.resolution import resolution
-from verification.framework.text_table import columns
+from verification.output.text_table import columns
 
 if TYPE_CHECKING:
     from refimpl.driver.options import Options

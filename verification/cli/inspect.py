@@ -15,7 +15,7 @@ from verification.cli.options import (
     output_file,
 )
 from verification.cli.output import PICTURES, StatusLine, check_outputs, check_suffix, emit, plain
-from verification.framework.text_table import columns, wrapped
+from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from refimpl import Inspection

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from verification.cli.options import Options, option
 from verification.cli.output import StatusLine, check_outputs, emit, refusal
 from verification.cli.pdf import PAPERS, compacts, printed
-from verification.framework.text_table import columns, wrapped
+from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from verification.framework.case import Case
@@ -40,10 +40,10 @@ def run(options: argparse.Namespace) -> int:
     from reports.departures import departures
     from reports.evidence import gathered
     from reports.generator import render
-    from reports.result_files import name_of, result_paths
     from reports.results import CaseDataError, ResultFileError
-    from verification.framework.files import write_text
-    from verification.framework.provenance import is_known
+    from verification.output.files import write_text
+    from verification.output.provenance import is_known
+    from verification.output.result_files import name_of, result_paths
 
     results = read_run(options.results)
     against = None if options.against is None else read_run(options.against, "--against")
@@ -125,7 +125,7 @@ def read_run(path: Path, option: str = "--results") -> Any:
 def read_or_refuse(option: str, path: Path) -> Any:
     """Return the document of a result file; raises InputError, naming the option, for no such file."""
     from refimpl.errors import require_regular
-    from reports.result_files import MOST_BYTES, read_result
+    from verification.output.result_files import MOST_BYTES, read_result
 
     require_regular(option, path, MOST_BYTES)
     try:

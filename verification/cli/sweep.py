@@ -19,7 +19,7 @@ from verification.cli.output import (
     plain,
     refusal,
 )
-from verification.framework.text_table import columns, wrapped
+from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from verification.sweep.engine import Progress, Sweep
@@ -154,7 +154,7 @@ def _check_suffixes(**written: Path | None) -> None:
 
 def _export(options: argparse.Namespace, done: Sweep, store: Path) -> None:
     """Write and show what was asked for; the rows take the table's place on standard output."""
-    from verification.framework.provenance import provenance
+    from verification.output.provenance import provenance
     from verification.sweep import export
 
     table = _table(done, store)

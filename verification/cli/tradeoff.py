@@ -21,7 +21,7 @@ def run(options: argparse.Namespace) -> int:
     from refimpl.scene.scene_file import read_scene
     from verification.benchmarks.cost_of_accuracy import costs, solve_grids, table
     from verification.framework.case import jsonable
-    from verification.framework.provenance import provenance
+    from verification.output.provenance import provenance
 
     if options.reference < 2 * max(options.grids) or options.reference % 2:
         allowed = f"an even grid of at least twice the finest one, {2 * max(options.grids)}"

@@ -12,7 +12,7 @@ from typing import Any
 from refimpl.errors import InputError
 from refimpl.scene.key_texts import FRICTION, MATERIAL, SCENE, SURFACES
 from refimpl.solution.quantities import QUANTITIES
-from verification.framework.files import replacing, write_text
+from verification.output.files import replacing, write_text
 from verification.sweep.run import Row
 from verification.sweep.store import COLUMNS
 

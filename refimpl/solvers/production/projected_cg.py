@@ -125,8 +125,8 @@ class ProjectedCG:
         return contact_residuals(gap, energy, approach, lowest, rounding)
 
     def undecided(self, stiffness: float, among: Mask | None = None) -> int:
-        """Return of how many elements, ``among`` these or all, the remaining error of the separation can
-        change the contact.
+        """Return the number of elements, ``among`` these or all, whose contact the remaining error of the
+        separation can change.
 
         ``stiffness`` is the pressure per displacement of a single element (Pa/m).
         """

@@ -23,7 +23,7 @@ from tests.reports import sample
 from tests.verification.cli.children import LONG, Ended, forked, one_line, started
 from tests.verification.cli.commands import run
 from verification.cli import main, solve
-from verification.framework import files
+from verification.output import files
 
 resource = pytest.importorskip("resource", reason="signals and limits of POSIX")
 START = (

@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 import refimpl as rf
-from reports.result_files import committed, read_result
 from reports.studies.accuracy_costs import build
 from tests.changed import changed
 from verification.benchmarks import cost_of_accuracy
 from verification.benchmarks.cost_of_accuracy import LOWER, class_scene, costs, solve_grids
 from verification.cli import main
+from verification.output.result_files import committed, read_result
 
 QUANTITIES = {"friction_coefficient", "contact_area", "max_pressure"}
 

@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from reports.result_files import encoded
+from verification.output.result_files import encoded
 
 _UNUSUAL = re.compile(r"[^\n -~]")
 _SHOWN = 40  # characters of the names of target and machine in that of a temporary file

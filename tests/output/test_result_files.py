@@ -12,9 +12,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reports import result_files
-from reports.result_files import FOLDER, committed, main, read_result, read_results, write_result
-from verification.framework import files
+from verification.output import files, result_files
+from verification.output.result_files import FOLDER, committed, main, read_result, read_results, write_result
 
 DOCUMENT = {"rows": [{"x": k / 7, "name": f"Größe {k}"} for k in range(90)], "none": None}
 SCALARS = (

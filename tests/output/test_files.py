@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from verification.framework import files
+from verification.output import files
 
 
 def test_a_file_is_whole_or_as_it_was(tmp_path: Path) -> None:
@@ -37,7 +37,7 @@ def test_the_next_write_removes_what_a_killed_writer_left(tmp_path: Path) -> Non
     target = tmp_path / "s.json"
     target.write_text("old")
     half = "with files.replacing(Path('s.json')) as temporary: temporary.write_text('half'); os._exit(9)"
-    code = f"import os; from pathlib import Path; from verification.framework import files\n{half}"
+    code = f"import os; from pathlib import Path; from verification.output import files\n{half}"
     assert subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=False).returncode == 9
     assert target.read_text() == "old"
     assert len(list(tmp_path.iterdir())) == 2

@@ -1,8 +1,8 @@
 """Result files: JSON documents, which the repository keeps compressed with gzip as ``NAME.json.gz``.
 
 `read_result` reads both forms; `write_result` compresses where the path ends in ``.gz``. The same document
-gives the same bytes. ``python -m reports.result_files FILE.json`` compresses a plain file before it is
-committed.
+gives the same bytes. ``python -m verification.output.result_files FILE.json`` compresses a plain file
+before it is committed.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-FOLDER = Path(__file__).with_name("results")
+FOLDER = Path(__file__).parents[2] / "reports" / "results"
 """The committed result files."""
 SUFFIX = ".json.gz"
 _MAGIC = b"\x1f\x8b"  # first bytes of a gzip file (RFC 1952)
