@@ -31,8 +31,8 @@ from verification.coverage.class_scenes import (
 )
 from verification.coverage.classes import reference
 from verification.framework.case import jsonable
-from verification.output.files import write_result
 from verification.output.provenance import provenance
+from verification.output.result_files import write_result
 from verification.output.text_table import columns
 
 CORRECTED: Final = "friction_coefficient_corrected"
