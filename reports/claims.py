@@ -6,7 +6,6 @@ import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
-from functools import cache
 from importlib import resources
 from itertools import pairwise
 from typing import Any
@@ -16,13 +15,12 @@ from reports.findings import MISSING, by_claim, filled, note
 from reports.results import Case, worst
 
 NOT_ESTABLISHED = "not established"
-ERRATUM, PRINT = "erratum proposed", "print or conversion"
 CONDITIONAL = "confirmed with conditions"
 VERDICTS = (
     NOT_ESTABLISHED,
     "not confirmed",
-    ERRATUM,
-    PRINT,
+    "erratum proposed",
+    "print or conversion",
     ROUNDED,
     CONDITIONAL,
     "confirmed",
@@ -88,7 +86,6 @@ def parts() -> list[Part]:
     return [Part(**entry) for entry in entries("part")]
 
 
-@cache
 def of_the_conversion() -> frozenset[str]:
     """Errata that may be faults of the text's conversion from print, by equation."""
     text = resources.files("reports").joinpath("paper.toml").read_text(encoding="utf-8")
@@ -148,8 +145,7 @@ def _verdict(
     given += [ascending(filled(text, by_name)) for text in claim.holds]
     if not claim.own:
         given += [v for v in map(recorded, cases) if v is not None]
-    verdict = min(given, key=VERDICTS.index, default=NOT_ESTABLISHED)
-    return PRINT if verdict == ERRATUM and of_the_conversion().issuperset(claim.corrected) else verdict
+    return min(given, key=VERDICTS.index, default=NOT_ESTABLISHED)
 
 
 def ascending(text: str) -> str:

@@ -62,12 +62,7 @@ class Contact:
     @property
     def transform_shape(self) -> tuple[int, int]:
         """Shape of the fields' Fourier transforms: no image of the contact touches what is wanted."""
-        grid = self.grid
-        if grid.periodic or not self.near:
-            return grid.transform_shape
-        box = grid.window_around(self.pressure > 0, margin=0).shape
-        nx, ny = (scipy.fft.next_fast_len(n + own) for n, own in zip(grid.shape, box, strict=True))
-        return nx, ny
+        return self.grid.transform_shape_near(self.pressure > 0) if self.near else self.grid.transform_shape
 
 
 def gap_changes(contact: Contact) -> tuple[Array, Array]:
@@ -101,7 +96,7 @@ class _Body:
         kx = np.where(np.abs(kx) < np.pi / dx * (1 - 1e-12), kx, 0.0)
         ky = np.where(np.abs(ky) < np.pi / dy * (1 - 1e-12), ky, 0.0)
         self.over_square = self.over_square.astype(self.real)
-        self.ik = tuple(1j * k.astype(self.real) for k in (kx, ky))
+        self.ik = tuple(np.multiply(1j, k.astype(self.real)) for k in (kx, ky))
         E, nu = material.E, material.nu
         self.modulus = E
         self.coupling = (1 + nu) * (1 - 2 * nu) / E

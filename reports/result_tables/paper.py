@@ -32,7 +32,8 @@ def table_3(reproduction: Mapping[str, Any]) -> str:
     )  # fmt: skip
     text = (
         "Table 1's ball on a flat under 70 N, as printed in the paper and as computed here: means over "
-        "random surfaces. Columns are named by the half-space's rms roughness, as in the paper. The interval is of the mean."
+        "random surfaces. Columns are named by the half-space's rms roughness, as in the paper. The "
+        "interval is of the mean."
     )
     return section("Table 3 of the paper", text, head, rows)
 
@@ -76,7 +77,8 @@ CLAIMS: dict[str, Column] = {
 def claims(evidence: Evidence) -> str:
     """List the paper's claims that do not hold or hold with conditions, and errata."""
     found = judged(evidence.cases, evidence.errata)
-    shown = [item for verdict in VERDICTS[: VERDICTS.index("confirmed")] for item in found if item.verdict == verdict and item.cases]
+    listed = VERDICTS[: VERDICTS.index("confirmed")]
+    shown = [item for verdict in listed for item in found if item.verdict == verdict and item.cases]
     return "\n\n".join([listing("Claims of the paper", _counted(found), shown, CLAIMS), errata(evidence)])
 
 

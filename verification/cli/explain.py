@@ -10,7 +10,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from refimpl.half_space.warning import ALLOWED, expected_error
-from refimpl.planning.rough_contact import estimates_of
+from refimpl.solution.rough_contact import estimates_of
 from refimpl.scene.discretise import discretise
 from refimpl.scene.resolution import resolution
 from verification.output.text_table import columns

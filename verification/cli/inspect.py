@@ -92,7 +92,7 @@ def run(options: argparse.Namespace) -> int:
 def _theories(found: Inspection, E: float, nu: float, load: float) -> tuple[list[dict[str, Any]], str]:
     """What both theories have for the levelled map under a rigid flat, as plain values and as a table."""
     from refimpl import Material
-    from refimpl.planning.rough_contact import Roughness, estimates
+    from refimpl.solution.rough_contact import Roughness, estimates
 
     if not load > 0:
         raise refusal("--with", load, "a positive load in N")

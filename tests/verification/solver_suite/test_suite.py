@@ -1,6 +1,6 @@
 """The suite for anyone's solver: faulty ones fail where they should, honest ones and other programs pass.
 
-Our own solver's pass is the case `solver_suite/own-solver` of the quick tier, which runs with the tests.
+Our own solver passes in the case `solver_suite/own-solver` of the quick tier, which runs with the tests.
 """
 
 from __future__ import annotations

@@ -66,7 +66,7 @@ def greenwood_williamson_share(pressure: float, roughness: Roughness, modulus: f
     full = 4 / 3 * modulus * density * math.sqrt(radius) * spread**1.5
 
     def misfit(distance: float) -> float:
-        return full * summits(1.5, distance) - pressure
+        return float(full * summits(1.5, distance) - pressure)
 
     if misfit(-_FARTHEST) <= 0:
         return 1.0
@@ -82,7 +82,7 @@ def summits(power: float, distance: float) -> float:
     """
 
     def density(t: float) -> float:
-        return t**power * math.exp(-0.5 * (distance + t) ** 2)
+        return float(t**power * math.exp(-0.5 * (distance + t) ** 2))
 
     top = max(-distance, 0.0)
     found, _ = scipy.integrate.quad(density, 0.0, top + 12.0, points=[top] if top else None)

@@ -9,7 +9,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Grid
-from refimpl.planning.rough_contact import (
+from refimpl.solution.rough_contact import (
     Roughness,
     estimates_of,
     greenwood_williamson_share,
