@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TypeVar
 
 T = TypeVar("T")
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 DISTRIBUTION = "rough-friction"
 PACKAGES = ("numpy", "scipy", "ducc0", "scikit-fem", "meshio", "mpmath", "python-flint", "SurfaceTopography",
             "matplotlib", "hypothesis", "pytest")  # fmt: skip
