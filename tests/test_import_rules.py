@@ -173,7 +173,7 @@ assert plain["solve"](z, z, (1.0, 1.0), (1e9, 0.3), (1e9, 0.3), 0.0, 0.1, load=1
 
 def test_the_plain_reference_is_one_page() -> None:
     lines = (ROOT / "refimpl" / "plain.py").read_text(encoding="utf-8").splitlines()
-    assert sum(bool(line.strip()) for line in lines) <= 200
+    assert sum(bool(line.strip()) for line in lines) <= 215
 
 
 def test_importing_refimpl_loads_no_package_of_scipy() -> None:

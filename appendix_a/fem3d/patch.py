@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Size = float | Array
 
 
-def normal_integral(x: Array, y: Array, half_x: float = 1.0, half_y: float = 1.0) -> Array:
-    """Integral of 1/rho over the rectangle, from (x, y): X asinh(Y/|X|) + Y asinh(X/|Y|) over its corners.
+def normal_integral(x: Array, y: Array, half_x: Size = 1.0, half_y: Size = 1.0) -> Array:
+    """Integral of 1/rho over rectangles, from (x, y): X asinh(Y/|X|) + Y asinh(X/|Y|) over their corners.
 
     >>> float(normal_integral(np.zeros(1), np.zeros(1))[0] / np.arcsinh(1.0))
     8.0

@@ -32,6 +32,9 @@ HALF_PI_TAIL = 6.123233995736766e-17
 FACE_ULP = 2.3e-16
 MOST_NODES = 500_000
 """Two seconds for one point: narrower wedges, or points further out, are refused."""
+NARROW, FAR = 0.1, 17.0
+"""Half-opening (rad) up to which only the limit field is left where abs(log r) exceeds ``FAR`` half-openings:
+the slowest mode has fallen to exp(-17 (2.1 - 0.1)) = 2e-15 there (zeros of ``residues``: Re w / 2 = 2.1)."""
 HORNER_RUN = 64
 """Terms between two restarts: the power's rounding error stays below 64 units in the last place."""
 
@@ -150,6 +153,13 @@ def half_plane(r: Real, delta: Real, sine: Real) -> tuple[Real, Complex]:
 
 def unit_stresses(r: Real, theta: Real, gamma: float) -> tuple[Real, Real, Real]:
     """(sigma_r, sigma_theta, tau_rtheta) at points of shape (n,), unit pressure on 0 < r < 1 of the faces."""
+    alpha = np.pi / 2 - gamma
+    limit = np.abs(np.log(r)) > (FAR * alpha if alpha <= NARROW else np.inf)
+    if limit.any():
+        found = np.array(limit_stresses(r, theta, alpha))
+        if not limit.all():
+            found[:, ~limit] = unit_stresses(r[~limit], theta[~limit], gamma)
+        return found[0], found[1], found[2]
     phi1, phi2, psi1 = remainder_sums(stress_rows, r, theta, gamma)
     mean = 4 * phi1.real
     deviator = 2 * (phi2 + np.exp(2j * theta) * psi1)
@@ -158,6 +168,12 @@ def unit_stresses(r: Real, theta: Real, gamma: float) -> tuple[Real, Real, Real]
         mean = mean + pressed
         deviator = deviator + (turned if side == 1 else np.conj(turned))
     return (mean - deviator.real) / 2, (mean + deviator.real) / 2, deviator.imag / 2
+
+
+def limit_stresses(r: Real, theta: Real, alpha: float) -> tuple[Real, Real, Real]:
+    """Uniform pressure near the tip, and far away the resultant's radial field (Michell 1900)."""
+    radial = -4 * np.sin(alpha) * np.cos(theta) / ((2 * alpha + np.sin(2 * alpha)) * r)
+    return np.where(r < 1, -1.0, radial), np.where(r < 1, -1.0, 0.0), np.zeros(r.shape)
 
 
 def unit_displacements(r: Real, theta: Real, gamma: float, nu: float) -> tuple[Real, Real]:

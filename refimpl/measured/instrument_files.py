@@ -64,7 +64,7 @@ def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
     for name in formats:
         try:
             refuse_changed(path, name)
-            return read_as(library, path, name, given, *rewritten(path, name))
+            return read_as(library, path, name, given, *rewritten(path, name, given))
         except InputError:
             raise
         except corrupt(library) as error:

@@ -12,23 +12,21 @@ import re
 from array import array
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import chain, islice, pairwise
+from itertools import islice, pairwise
 from pathlib import Path
 
 import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
+from refimpl.measured.decimal_marks import refuse_ambiguous
 from refimpl.measured.table_labels import is_title, without_labels, word_in_corner
 from refimpl.measured.text_lines import NOT_MEASURED, encoding_of, lines_of
 
 MAX_HEADER = 400  # lines before the numbers
 _SAMPLE = 50  # lines by whose entries labels of rows and columns are known
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?")
-_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}[.,]\d{3}")
 _NO_DATA = re.compile(rf"(nodata_value)\s+({_NUMBER.pattern})", re.IGNORECASE)
-_WHOLE = re.compile(r"[-+]?\d{1,3}")
-_TIGHT = re.compile(r"\d,\d")
 _COMMA_NUMBER = re.compile(r"[-+]?(\d+,\d*|,\d+)([eEdD][-+]?\d+)?")
 
 
@@ -69,7 +67,6 @@ def read_table(path: Path) -> TextTable:
     layout, start, width = _layout(path, lines)
     shown = [line for line in lines[start : start + _SAMPLE] if line and line[0] != "#"]
     sample = [layout.cells(line) for line in shown]
-    layout.refuse_ambiguous(path, shown, sample)
     titled, corner = is_title(sample), word_in_corner(sample, layout.unknown(sample[0]))
     comments: list[tuple[int, str]] = []
 
@@ -86,6 +83,7 @@ def read_table(path: Path) -> TextTable:
                 count += 1
                 yield number, line.replace(corner, "nan", 1) if corner and count == 1 else line
 
+    refuse_ambiguous(path, lambda: (line for _, line in data()), layout.separator, shown)
     notes: list[str] = []
     rows = _plain_numbers(layout, (line for _, line in data()))
     if rows is None:
@@ -126,24 +124,6 @@ class _Layout:
         if self.separator is not None:
             return before.rstrip(" ").endswith(self.separator)
         return all(map(self.is_number, after.split()[1:])) and len(after.split()) > 1
-
-    def refuse_ambiguous(self, path: Path, lines: list[str], sample: list[list[str]]) -> None:
-        """Raise InputError where marks within numbers may be decimal or of thousands, or separate them."""
-        columns = [[row[k] for row in sample if k < len(row) and row[k]] for k in range(len(sample[0]))]
-        marked = [[cell for cell in column if "." in cell or "," in cell] for column in columns]
-        thousands = any(marked) and all(_THOUSANDS.fullmatch(cell) for cell in chain(*marked))
-        whole = [any(map(_WHOLE.fullmatch, column)) for column in columns]
-        mixed = any(part and some for part, some in zip(marked, whole, strict=True))
-        if thousands and (mixed or "," in chain.from_iterable(chain(*marked))):
-            found = next(chain(*marked))
-            raise InputError("path", str(path), f"decimal points (is {found!r} a thousand times as much?)")
-        if self.separator == "," and not any(marked):
-            zeros = any(len(cell) > 1 and cell[0] == "0" for cell in chain(*columns))
-            if zeros or (any(", " in line for line in lines) and any(map(_TIGHT.search, lines))):
-                found = f"are the commas in {lines[0][:40]!r} separators or decimal marks?"
-                raise InputError(
-                    "path", str(path), f"decimal points, or semicolons between entries ({found})"
-                )
 
     def ends(self, line: str) -> bool:
         """Return whether the separator ends the line."""

@@ -1,6 +1,7 @@
 """Files that SurfaceTopography refuses or reads wrongly, rewritten in memory so that it reads them right.
 
-As of version 1.27.1: X3P of other writers than its own, compressed SUR, the lateral unit of NMS, Wyko's text.
+As of version 1.27.1: X3P of other writers than its own, compressed SUR, the lateral unit of NMS, Wyko's text,
+Gwyddion's fields without units.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
-from refimpl.measured.reading import MAX_BYTES
+from refimpl.measured.reading import MAX_BYTES, UNITS, Overrides
 
 Source = str | io.BytesIO
 
@@ -29,16 +30,20 @@ _CHECKSUM = (
     r"<(?:\w+:)?(?:PointData|ValidPoints)Link>\s*([^<]*?)\s*</[^>]*>\s*"
     r"<(?:\w+:)?MD5Checksum(?:PointData|ValidPoints)>\s*([0-9A-Fa-f]{32})\s*<"
 )
+_GWY_UNITS = b"si_unit_xy", b"si_unit_z"
+_GWY_FIELD = re.compile(rb"/\d+/data\0oGwyDataField\0(.{4})", re.DOTALL)
 _SUR_HEADER, _SUR_COMMENT = 512, "<hh"
 _SUR_LENGTHS_AT = 314  # bytes: lengths of comment and private zone
 
 
-def rewritten(path: Path, name: str | None) -> tuple[Source, tuple[str, ...]]:
+def rewritten(path: Path, name: str | None, given: Overrides) -> tuple[Source, tuple[str, ...]]:
     """Return what to hand to the library for a file of format ``name``, and a note of what was changed."""
     if name == "x3p":
         return _x3p(path)
     if name == "sur":
         return _sur(path.read_bytes(), path)
+    if name == "gwy":
+        return _gwy(path.read_bytes(), path, given)
     return str(path), ()
 
 
@@ -133,6 +138,35 @@ def _sur(raw: bytes, path: Path) -> tuple[Source, tuple[str, ...]]:
         at += packed
     plain = b"DIGITAL SURF" + raw[12 : _SUR_HEADER + comment + private] + b"".join(data)
     return io.BytesIO(plain), ("compressed SUR, unpacked here",)
+
+
+def _gwy(raw: bytes, path: Path, given: Overrides) -> tuple[Source, tuple[str, ...]]:
+    """Fields that lack a unit get the given one and the given pixel, unless another field states its own."""
+    fields = [(m.end(), m.end() + int.from_bytes(m[1], "little")) for m in _GWY_FIELD.finditer(raw)]
+    stated = [[_gwy_unit(raw[begin:end], key) for key in _GWY_UNITS] for begin, end in fields]
+    if all(map(all, stated)) or any(set(units) <= set(UNITS) for units in stated):
+        return str(path), ()
+    unit, pixel, _ = given.resolve(path.name, None, None)
+    for (begin, end), units in zip(reversed(fields), reversed(stated), strict=True):
+        if all(units):
+            continue
+        own, added = units[1] or unit, b""
+        for key, axis, edge in zip(_GWY_UNITS, b"xy", pixel, strict=True):
+            text = f"unitstr\0s{own}\0".encode()
+            counted = re.search(b"%cres\0i(.{4})" % axis, raw[begin:end], re.DOTALL)
+            length = edge / UNITS.get(own, 1.0) * int.from_bytes(counted[1] if counted else b"", "little")
+            added += key + b"\0oGwySIUnit\0" + struct.pack("<I", len(text)) + text
+            added += b"%creal\0d" % axis + struct.pack("<d", length)
+        size = struct.pack("<I", end - begin + len(added))
+        raw = raw[: begin - 4] + size + raw[begin:end] + added + raw[end:]
+    head = raw.index(b"\0") + 1
+    return io.BytesIO(raw[:head] + struct.pack("<I", len(raw) - head - 4) + raw[head + 4 :]), ()
+
+
+def _gwy_unit(field: bytes, key: bytes) -> str:
+    """Unit that a field states, or nothing."""
+    found = re.search(rb"%b\0oGwySIUnit\0.{4}unitstr\0s([^\0]*)" % key, field, re.DOTALL)
+    return found[1].decode("utf-8", "replace") if found else ""
 
 
 def wyko_header(path: Path, header: tuple[str, ...]) -> tuple[str, ...]:

@@ -28,6 +28,8 @@ class Detail:
     name, length : of the detail's length (m)
     resolved : elements per length from which slopes count as resolved
     curvature : rms of the Laplacian over rms of the gradient, times the length
+    gradient : rms of the surface's gradient
+    unresolved : share of its mean square in waves shorter than two elements of the given spacing
     missed : what a grid of the given spacing misses, in words; empty where that has no simple number
     """
 
@@ -35,6 +37,8 @@ class Detail:
     length: float
     resolved: float
     curvature: float
+    gradient: float
+    unresolved: float
     missed: str = ""
 
     def required(self, accuracy: float) -> float:

@@ -150,7 +150,7 @@ def run(options: argparse.Namespace) -> int:
         show_finished(interrupt, options.scene)
         raise
     _write_files(solution, scene, options)
-    found = document(solution, options.scene)
+    found = document(solution, options.scene) if options.json else {}
     text = table(solution, options.scene, waited=time.perf_counter() - began)
     if tolerances or options.budget:
         text = _with_budget(scene, solution, tolerances, options, found, text)

@@ -29,7 +29,7 @@ from verification.coverage.class_scenes import (
     scene,
     windows_of,
 )
-from verification.coverage.classes import REFERENCE, reference
+from verification.coverage.classes import reference
 from verification.framework.case import jsonable
 from verification.output.files import write_result
 from verification.output.provenance import provenance
@@ -38,6 +38,7 @@ from verification.output.text_table import columns
 CORRECTED: Final = "friction_coefficient_corrected"
 SUMMED: Final = "friction_coefficient"
 ASKED: dict[str, float] = {CORRECTED: 0.01, SUMMED: 0.01, "contact_area_corrected": 0.05}
+REFERENCE = 512  # along the longer side
 SIZES = [M for M in GRID_SIZES if M < REFERENCE]
 
 
@@ -50,7 +51,7 @@ def costs(one: rf.Scene, *, most: int = REFERENCE) -> list[dict[str, Any]]:
     single = {M: rf.solve(one, grid=M) for M in SIZES}
     rows: list[dict[str, Any]] = []
     for name, accuracy in ASKED.items():
-        exact, _ = reference(finest, name)
+        exact, _ = reference(finest.details.features, name)
         fit = {M: abs(float(getattr(s, name)) - exact) <= accuracy * abs(exact) for M, s in single.items()}
         cheapest = next((M for M in SIZES if all(fit[N] for N in SIZES if N >= M)), None)
         asked, discretiser = Options(scene=one, accuracy=accuracy, quantity=name), Discretiser(one, None)

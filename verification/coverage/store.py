@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import refimpl as rf
-from refimpl.accuracy.contact_edge import EdgeOffset
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.peak import Peak
 from refimpl.accuracy.refinement import FIRST_GRIDS, longer_side
@@ -80,15 +79,17 @@ def grid_solves(path: Path) -> Iterator[GridSolve]:
             record = json.loads(line)
         except json.JSONDecodeError:
             continue
-        yield GridSolve(**{**record, "result": _features(record["result"])})
+        yield GridSolve(**{**record, "result": features_of(record["result"])})
 
 
-def _features(record: dict[str, Any]) -> GridFeatures:
+def features_of(record: dict[str, Any]) -> GridFeatures:
+    """Return the features that `dataclasses.asdict` made plain."""
     peaks = {name: Peak(**record[name]) for name in ("peak", "first_contact")}
     straight = {name: StraightEdges(**record[name]) for name in ("straight", "plastic_straight")}
-    grid, offset = record["grid"], EdgeOffset(*record["offset"])
+    tuples = {name: tuple(record[name]) for name in ("faces", "highest_areas")}
+    grid = record["grid"]
     restored = rf.Grid(tuple(grid["shape"]), tuple(grid["lengths"]), grid["periodic"])
-    return GridFeatures(**{**record, **peaks, **straight, "grid": restored, "offset": offset})
+    return GridFeatures(**{**record, **peaks, **straight, **tuples, "grid": restored})
 
 
 def refinements(path: Path) -> dict[int, list[GridSolve]]:

@@ -124,6 +124,34 @@ def test_what_an_array_lacks_is_asked_for(tmp_path: Path) -> None:
                 read(tmp_path / name, unit="um")
 
 
+@pytest.mark.parametrize("spelling", [b"", b"V"])
+@pytest.mark.parametrize("absent", ["si_unit_xy", "si_unit_z", "both"])
+def test_a_gwyddion_field_without_a_unit_takes_the_given_one(
+    tmp_path: Path, absent: str, spelling: bytes
+) -> None:
+    """A unit left out or empty is none; volts are one, and no heights."""
+    path = tmp_path / "a.gwy"
+    write.write_gwy(path, MAP)
+    raw = path.read_bytes()
+    for key in ("si_unit_xy", "si_unit_z") if absent == "both" else (absent,):
+        unit = key.encode() + b"\0oGwySIUnit\0\x0b\0\0\0unitstr\0sm\0"
+        assert unit in raw
+        # of one length: the name of another key, and one letter
+        raw = raw.replace(unit, unit[:-2] + spelling + b"\0" if spelling else b"no" + unit[2:])
+    path.write_bytes(raw)
+    if spelling:
+        with pytest.raises(InputError, match="a map of heights"):
+            read(path, **BOTH)
+        return
+    with pytest.raises(InputError, match=r"both: a\.gwy does not state them"):
+        read(path, unit="um")
+    found = read(path, **BOTH)
+    same(found.heights / 1e-6)
+    assert (found.pixel, found.unit) == (PIXEL, "um")
+    states_metres = ("unit 'um' is used; the file states 'm'",)
+    assert found.notes == (states_metres if absent == "si_unit_xy" else ())
+
+
 @pytest.mark.parametrize(("unit", "name", "size"), [("A", "A", 1e-10), ("Å", "A", 1e-10), ("μm", "um", 1e-6)])
 def test_units_have_names_in_ascii(tmp_path: Path, unit: str, name: str, size: float) -> None:
     np.save(tmp_path / "a.npy", np.ones((4, 5)))

@@ -229,6 +229,20 @@ def test_labels_and_what_stands_above_a_table(
         read_table(tmp_path / "a.csv")
 
 
+@pytest.mark.parametrize("side", ["first row", "first column"])
+def test_uneven_coordinates_alone_are_refused(tmp_path: Path, side: str) -> None:
+    """Ten of them or more that rise steadily, beside heights that do not."""
+    rng = np.random.default_rng(5)
+    z = rng.normal(size=(14, 13))
+    at = np.cumsum(rng.uniform(0.5, 2.0, 14))[::-1]
+    np.savetxt(tmp_path / "plain.csv", z, fmt="%.3f", delimiter=",")
+    assert read_table(tmp_path / "plain.csv").rows.shape == (14, 13)
+    table = np.column_stack([at, z])
+    np.savetxt(tmp_path / "a.csv", table.T if side == "first row" else table, fmt="%.3f", delimiter=",")
+    with pytest.raises(InputError, match=f"heights without their coordinates .*{side}"):
+        read_table(tmp_path / "a.csv")
+
+
 def test_a_text_of_two_images_gives_either(tmp_path: Path) -> None:
     write.write_txt(tmp_path / "one.txt", MAP)
     one = (tmp_path / "one.txt").read_bytes().decode("latin-1")
@@ -280,6 +294,21 @@ def test_an_unknown_spelling_that_begins_like_a_comment_is_refused(tmp_path: Pat
     rows = [separator.join(["1.5", "2.25", "0.5", "3.5", "#lost", "4.5"])] * 6
     (tmp_path / "a.txt").write_text("\n".join(rows))
     with pytest.raises(InputError, match=r"comments that begin a line or follow a row .line 1:"):
+        read_table(tmp_path / "a.txt")
+
+
+@pytest.mark.parametrize("separator", [",", "\t", ";", " "])
+@pytest.mark.parametrize("late", ["1.002", "0.02", "1.5"])
+def test_marks_that_may_be_of_thousands_are_judged_by_all_rows(
+    tmp_path: Path, separator: str, late: str
+) -> None:
+    """998, then 1.002 far below: a thousand and two as well as one; 0.02 in any row tells."""
+    rows = [["998", "1.120", "995", "987"]] * 90 + [["997", "1.118", late, "985"]]
+    (tmp_path / "a.txt").write_text("\n".join(map(separator.join, rows)))
+    if late != "1.002":
+        assert read_table(tmp_path / "a.txt").rows[-1].tolist() == [997, 1.118, float(late), 985]
+        return
+    with pytest.raises(InputError, match=r"is '1\.120' a thousand times as much"):
         read_table(tmp_path / "a.txt")
 
 

@@ -2,60 +2,56 @@
 
 from __future__ import annotations
 
-import math
 from itertools import product
-from pathlib import Path
 from types import SimpleNamespace as Made
-from typing import Any
 
 import numpy as np
 import pytest
 
 import refimpl as rf
 from tests.documents import ROOT
+from tests.refimpl.accuracy.made_up import AREA_LIMIT, BETA, DMU_DA, made_up
 from verification.coverage import class_costs, classes
+from verification.coverage.building import Solved, as_corrected
 from verification.coverage.class_costs import SIZES, costs
 from verification.coverage.class_scenes import CLASSES, scene
-from verification.output.result_files import committed, read_result
+from verification.output.result_files import committed
+
+MU = BETA + DMU_DA * AREA_LIMIT
 
 
 def test_references_known_values() -> None:
-    """The mean excess, 8e-9, and its bounds: 0.12 of the edge's 1e-8, and half of straight edges, 4 faces."""
-    straight, grid = Made(faces=10, squares=16), Made(element_area=1e-10)
-    own = {"straight": straight, "grid": grid, "edge": 1e-8, "excess": 8e-9, "dmu_dA": 1e5}
-    own["peak"] = Made(height=6)
-    numbers = dict(zip(classes.NUMBERS, (0.3, 0.4, 3e-6, 2e-6, 5, 7), strict=True))
-    area, bound = 3e-6 - 8e-9, math.hypot(0.12e-8, 0.5 * 4 * 1e-10)
-    mu = 0.4 + 1e5 * (area - 3e-6)
-    for yields, peak in ((False, 6), (True, 5)):
-        details = Made(features=Made(**own, yields=yields))
-        finest: Any = Made(**numbers, error=lambda name: 0.3, details=details)
-        values, doubts = zip(*(classes.reference(finest, name) for name in numbers), strict=True)
-        assert values == pytest.approx((mu, mu, area, area, peak, 7), rel=1e-9)
-        assert doubts == pytest.approx((1e5 * bound, 1e5 * bound, bound, bound, 0.3, 0.3))
+    """A disc's limits, and their bounds: 0.12 of the edge."""
+    fine = as_corrected(made_up(512))
+    for name, limit, unit in (("contact_area", AREA_LIMIT, 1.0), ("friction_coefficient", MU, DMU_DA)):
+        for number in (name, f"{name}_corrected"):
+            value, bound = classes.reference(fine, number)
+            assert (value, bound) == pytest.approx((limit, 0.12 * unit * fine.edge), rel=1e-9)
+    assert classes.reference(fine, "max_pressure")[0] == fine.peak.height
+    assert classes.reference(fine, "approach")[0] == fine.numbers["approach"]
 
 
-def test_scenes_are_counted_by_class(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Seeds 3 to 7, of which 5 does not converge; all bars but the third hold."""
-    asked = []
-    ends = {3: (0.4, 0.1, 0.1), 4: (0.2, 0.2, 0.1), 6: (0.1, 0.3, 0.0), 7: (9.126, 1.0, 1.0)}
+def test_one_grid_of_a_scene_is_judged_and_an_exact_number_counts_first() -> None:
+    """Seed 5 of three grids takes the third; the known area is a tenth larger than any grid's."""
+    grids = tuple(as_corrected(made_up(M)) for M in (48, 64, 96, 512))
+    exact = {"contact_area": 1.1 * AREA_LIMIT}
+    found = {row["number"]: row for row in classes.rows([Solved("few elements", 5, grids, exact)])}
+    assert {row["M"] for row in found.values()} == {96}
+    assert found["contact_area_corrected"]["error"] == pytest.approx(0.1, rel=1e-6)
+    assert found["friction_coefficient_corrected"]["error"] < 1e-6
+    assert not found["contact_area"]["too_large"]
 
-    def rows(seed: int, M: int, _: object) -> list[dict[str, object]] | None:
-        asked.append(M)
-        row = zip(("bar", "error", "reference_bound"), ends.get(seed, ()), strict=False)
-        return None if seed == 5 else [{**dict(row), "number": "approach", "too_large": True}]
 
-    monkeypatch.setattr(classes, "single_grid_rows", rows)
-    monkeypatch.setattr(classes, "scene", lambda kind, seed, _: seed)
-    file = tmp_path / "c.json"
-    classes.main(["--first", "3", "--scenes", "5", "--only", "grooves", "--json", str(file)])
-    found = read_result(file)
-    assert (asked, found["not_converged"]) == ([128, 48, 64, 96, 128], {"grooves": 1})
-    every = found["table"][-1]
+def test_a_summary_counts_bars_known_values() -> None:
+    """Four scenes; all bars but the third hold."""
+    ends = (0.4, 0.1, 0.1), (0.2, 0.2, 0.1), (0.1, 0.3, 0.0), (9.126, 1.0, 1.0)
+    keys = "bar", "error", "reference_bound"
+    every = classes.summary(dict(zip(keys, row, strict=True)) | {"too_large": True} for row in ends)
     assert [every[key] for key in ("scenes", "held", "held_at_worst", "usable")] == [4, 0.75, 0.5, 0.75]
     assert (every["held_of_usable"], every["median_bar_over_error"]) == pytest.approx((2 / 3, 2.5), rel=1e-5)
     assert every["bias_over_bar"] == pytest.approx(1.6 / 9.826, rel=1e-5)
     assert every["p"] == pytest.approx(1 - 0.92**4, rel=1e-5)  # probability of three of four, or fewer
+    assert (every["longest_miss"], every["unbounded"]) == (pytest.approx(3.0), 0.0)
 
 
 def test_bars_that_hold_more_often_than_they_need_are_no_failure() -> None:
@@ -90,15 +86,16 @@ def test_a_coarse_grid_that_is_right_by_chance_is_not_the_cheapest(monkeypatch: 
     mu = {32: 1.005, 64: 1.05, 96: 0.991, 128: 1.0, class_costs.REFERENCE: 1.0}
 
     def solved(one: rf.Scene, grid: int = 96, **_: object) -> Made:
-        return Made(
+        found = Made(
             friction_coefficient_corrected=mu[grid],
             friction_coefficient=1.0,
             contact_area_corrected=2e-6,
             cost=Made(point_logs=float(grid**2)),
-            details=Made(problem=Made(grid=Made(shape=(48, grid)))),
             status=rf.Status.CONVERGED,
             converged=True,
         )
+        found.details = Made(features=found, problem=Made(grid=Made(shape=(48, grid))))
+        return found
 
     monkeypatch.setattr(class_costs, "SIZES", [32, 64, 96, 128])
     monkeypatch.setattr(class_costs.rf, "solve", solved)
@@ -142,7 +139,7 @@ def test_the_reference_is_where_the_summed_mu_goes() -> None:
     off = []
     for kind, seed in product(CLASSES, range(960000, 960003)):
         coarse, fine, finest = (rf.solve(scene(kind, seed), M) for M in (96, 512, 1024))
-        found, _ = classes.reference(fine, "friction_coefficient")
+        found, _ = classes.reference(fine.details.features, "friction_coefficient")
         limit = 2 * finest.friction_coefficient - fine.friction_coefficient
         off.append((found - limit) / coarse.error("friction_coefficient_corrected"))
     assert abs(np.mean(off)) < 0.05
