@@ -193,8 +193,8 @@ class GaussianRoughness(Surface):
         return math.sqrt(second - (first - shift) ** 2)
 
     def detail(self, spacing: float) -> Detail:
-        # mean squares of the Laplacian and the gradient of Eq. (9): 32 c^2 and 4 c, c = 2.3 / l^2;
-        # of the spectrum exp(-q^2 / (4 c)) the gradient's square beyond q is (1 + s) exp(-s), s = q^2 / (4 c)
+        # mean squares of the Laplacian and the gradient of Eq. (9): 32 c^2 and 4 c, c = 2.3 / l^2.
+        # With exp(-q^2 / (4 c)) the gradient's square beyond q is (1 + s) exp(-s), s = q^2 / (4 c)
         length = min(self.ellipse.along, self.ellipse.across)
         beyond = (math.pi / spacing * length) ** 2 / (4.0 * DECAY)
         unresolved = (1.0 + beyond) * math.exp(-beyond)

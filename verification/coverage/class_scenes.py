@@ -14,7 +14,7 @@ import refimpl as rf
 from refimpl.grid import Array
 from refimpl.model.materials import Pair
 from verification.coverage.drawing import SIDE, Ball, Dice, Wave, measured_like
-from verification.coverage.textures import Profile, RoundedPunch, Spots
+from verification.coverage.textures import Pads, Profile, RoundedPunch
 from verification.output.files import Progress
 
 RMS = 1e-7  # m
@@ -147,7 +147,7 @@ def _textured(draw: _Draw, sign: float, number: int) -> rf.Surface:
     height = RMS * draw.log(1, 30)
     draw.slope = height / cell
     draw.ball = draw.ball or not draw.periodic
-    return Spots(sign * height, (number, number), radius, rim, draw.seed, square, rounded)
+    return Pads(sign * height, (number, number), radius, rim, draw.seed, square, rounded)
 
 
 def _pads(draw: _Draw) -> rf.Surface:
