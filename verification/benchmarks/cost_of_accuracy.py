@@ -22,8 +22,9 @@ import refimpl as rf
 from refimpl.solution.quantities import error_bound
 from verification.benchmarks.problems import COPPER, FRICTION, SPHERE, STEEL
 from verification.framework.case import jsonable
-from verification.output.files import Progress, write_result
+from verification.output.files import Progress
 from verification.output.provenance import provenance
+from verification.output.result_files import write_result
 from verification.output.text_table import columns
 
 GRIDS = (32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024)

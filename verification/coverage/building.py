@@ -20,9 +20,9 @@ from refimpl.model.materials import Pair
 from verification.coverage.class_scenes import CLASSES, GRIDS, scene
 from verification.coverage.store import features_of
 from verification.coverage.textures import RoundedPunch
-from verification.output.files import Progress, write_result
+from verification.output.files import Progress
 from verification.output.provenance import provenance
-from verification.output.result_files import read_result
+from verification.output.result_files import read_result, write_result
 
 REFERENCE = 384  # elements along the longer side
 WAVES = "short waves"  # part of an error bar

@@ -143,7 +143,7 @@ def _textured(draw: _Draw, sign: float, number: int) -> rf.Surface:
     height = RMS * draw.log(1, 30)
     draw.slope = height / cell
     draw.ball = draw.ball or not draw.periodic
-    return Spots(sign * height, (number, number), radius, rim, draw.seed, square, rounded)
+    return Pads(sign * height, (number, number), radius, rim, draw.seed, square, rounded)
 
 
 def _pads(draw: _Draw) -> rf.Surface:
