@@ -21,7 +21,7 @@ report: $(READY)
 results: $(READY)
 	sed -n 's/^| `\([a-z_0-9]*\).json` | `\(rough-friction verify [^`]*\)FILE`.*/\2reports\/results\/\1.json/p' \
 		reports/results/README.md | PATH="$(CURDIR)/$(BIN):$$PATH" xargs -d '\n' -P 2 -I {} sh -c '{}'
-	$(BIN)/python -m reports.result_files reports/results/*.json
+	$(BIN)/python -m verification.output.result_files reports/results/*.json
 	$(BIN)/python -m reports.results_page
 
 test: lint

@@ -10,7 +10,7 @@ import griffe
 from latex2mathml.converter import convert
 
 import refimpl
-from verification.cli import parser
+from verification.cli import keys, parser
 
 OUT = Path("out/pages")
 PACKAGES = ("refimpl", "appendix_a", *(f"verification/{x}" for x in ("framework", "solver_suite", "sweep")))
@@ -55,6 +55,7 @@ def pages() -> Iterator[tuple[str, str]]:
             shown = f"```{name.suffix[1:]}\n{name.read_text(encoding='utf-8')}```\n"
             yield f"{name}.md", f"{LAST}# {name}\n\n{shown}"
         text += "\n".join(options(parser())) if path.stem == "command-line" else ""
+        text = keys.page(text) if path.stem == "scene-file" else text
         text = FORMULA.sub(formula, text)
         yield str(path), NAMED.sub(r'```\1 title="\2"', SOURCE.sub(r"\1.md", text)).replace(".ipynb)", ".md)")
     starts = [path.parent for top in PACKAGES for path in sorted(Path(top).rglob("__init__.py"))]

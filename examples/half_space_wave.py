@@ -5,7 +5,7 @@ import sys
 import matplotlib.pyplot as plt
 from PIL import Image
 
-from reports.result_files import committed
+from verification.output.result_files import committed
 
 NAME = sys.argv[1] if len(sys.argv) > 1 else "model_form"
 PICTURE = sys.argv[2] if len(sys.argv) > 2 else "half_space_wave.png"

@@ -3,7 +3,7 @@
 Source: Karpenko and Akay (2001), Eqs (1) to (8). It imports nothing of this project. One value an element;
 heights point upwards, displacements into the bodies; s is along the sliding, t 90 degrees anticlockwise:
 
-h = z_upper - z_lower                    gap; zero at first contact (periodic: of mean zero)
+h = z_upper - z_lower                    gap; zero at first contact
 r = q + beta f                           shear by the pressure f; q = tau on the active set, else 0     (1, 8)
 u_b = (1 - nu^2)/(pi E) J f +- (1 + nu)(1 - 2 nu)/(2 pi E) J_s r     + lower, - upper body                 (7)
 u = u_lower + u_upper                    J = I[1/rho], J_s = I[s/rho^2]: integrals over an element
@@ -19,7 +19,10 @@ facets: u by the tractions f - r tan theta_x (down), r + f tan theta_x (along s)
 The active set of tau. 1. Gradual state: q = tau (1 - (v - delta)/reach), between 0 and tau. The reach is
 twice what tau moves around an element, 4 tau sqrt(dA) max(|c|, a/100), with the pair's factors a of J, c of
 J_s. This state does not depend on the path to it. 2. The active set is the contact of the gradual state.
-Solve with it; elements that are not in contact leave it; solve again, until none leaves.
+Solve with it; elements that are not in contact leave it; solve again, until none leaves. 3. Elements in
+contact may be left without tau. If all pressures exceed 1.4 times what closes the gap by tau on those, each
+alone (2 a sqrt(dA)), and theirs 1/50 of the reach over that, or if most are left without: solve with tau on
+all of the contact. If that is the contact again, this is the state.
 """
 
 from types import SimpleNamespace
@@ -65,15 +68,16 @@ class Model(SimpleNamespace):
         self.spacing = self.lengths[0] / self.shape[0], self.lengths[1] / self.shape[1]
         self.dA = self.spacing[0] * self.spacing[1]
         gap = (self.z_upper - self.z_lower).ravel()
-        self.h = gap - (gap.mean() if self.periodic else gap.min())
+        self.h = gap - gap.min()
+        self.datum = self.h.mean() if self.periodic else 0.0  # approach 0: mean planes, or first contact
         self.J, self.Js, self.Jt = integrals(self.shape, self.spacing, self.direction, self.periodic)
         self.a_of = [(1 - nu**2) / (np.pi * E) for E, nu in (self.lower, self.upper)]
         self.c_of = [(1 + nu) * (1 - 2 * nu) / (2 * np.pi * E) for E, nu in (self.lower, self.upper)]
         self.a, self.c = sum(self.a_of), self.c_of[0] - self.c_of[1]
         self.reach = 4 * self.tau * self.dA**0.5 * max(abs(self.c), self.a / 100)
-        self.delta = np.inf if self.approach is None else self.approach
+        self.delta = np.inf if self.approach is None else self.approach + self.datum
         self.part = np.where(self.h < self.delta, CONTACT, OPEN)
-        self.f, self.q, self.left = np.zeros(gap.size), np.zeros(gap.size), iter(range(750 + 75 * gap.size))
+        self.f, self.q, self.left = *np.zeros((2, gap.size)), iter(range(150 + 50000 // gap.size))
         self.set_slopes(np.zeros((2, gap.size)))
         self.set_slopes(self.deformed_slopes() if self.slopes else self.tan)
 
@@ -150,7 +154,8 @@ class Model(SimpleNamespace):
         for _, _ in zip(range(50 + 5 * self.h.size), self.left, strict=False):  # at most 15 such
             self.solve_parts(active)
             part, v = self.part, self.v()
-            clearance, near, small = v - self.delta, *(ROUNDING * abs(x).max() for x in (v - self.h, self.f))
+            terms = abs(v - self.h) + abs(self.a * self.J @ self.f)  # pressure and shear may cancel
+            clearance, near, small = v - self.delta, *(ROUNDING * abs(x).max() for x in (terms, self.f))
             limit = self.reach + np.where(part == PARTIAL, near, -near) if active is None else -np.inf
             beside = np.where(clearance < limit, PARTIAL, OPEN)
             new = np.where(part < CONTACT, np.where(clearance < -near, CONTACT, beside), part)
@@ -189,7 +194,7 @@ def solve(
 ) -> SimpleNamespace:
     """Return the solution for heights (m, Mx by My) on a domain of ``lengths`` (m), bodies (E, nu) (Pa, -).
 
-    Given ``load`` (N) or ``approach`` (m; periodic: below 0). ``softer``: what yields, "lower" or "upper".
+    Given ``load`` (N) or ``approach`` (m; periodic: from the mean planes). ``softer``: the body that yields.
     Returns pressure, traction (Pa), active (mask of tau), approach (m), normal, friction, transverse (N), mu,
     area, plastic_area (m^2), p_max (Pa), tangents, ended ("converged", or what did not settle). Raises
     ValueError for other shapes, more than 64 x 64 elements, a load above the hardness times the domain.
@@ -211,13 +216,23 @@ def solve(
         before, active = active, active & (model.part >= CONTACT)
         if (active == before).all():
             break
-    contact = model.part >= CONTACT
+    contact, state = model.part >= CONTACT, vars(model) | {"part": model.part.copy()}
+    spared = contact & ~active
+    lifting = np.maximum(1.4 * model.c * (model.Js @ (tau * spared)), spared * model.reach / 50)
+    stays = (2 * model.a * model.dA**0.5 * model.f > lifting)[contact].all()
+    if touch and tau > 0 and spared.any() and (stays or 2 * spared.sum() > contact.sum()):
+        model.settle(contact)
+        if model.ended == "converged" and (contact == (model.part >= CONTACT)).all():
+            active = contact
+        else:
+            vars(model).update(state)
     model.f, model.q = np.where(contact, np.maximum(model.f, 0.0), 0.0), tau * active * contact
     N, F, Q = model.forces()
     arrays = {"pressure": model.f, "traction": model.q + beta * model.f, "active": active & contact}
     return SimpleNamespace(
         **{name: array.reshape(shape) for name, array in arrays.items()},
-        approach=model.delta, normal=N, friction=F, transverse=Q, mu=F / (load or N) if N else np.nan,
-        area=contact.sum() * model.dA, plastic_area=(model.part == PLASTIC).sum() * model.dA,
-        p_max=model.f.max(), tangents=model.tan.reshape(2, *shape), ended=model.ended,
+        approach=model.delta - model.datum, normal=N, friction=F, transverse=Q,
+        mu=F / (load or N) if N else np.nan, p_max=model.f.max(), area=contact.sum() * model.dA,
+        plastic_area=(model.part == PLASTIC).sum() * model.dA,
+        tangents=model.tan.reshape(2, *shape), ended=model.ended,
     )

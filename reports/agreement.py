@@ -90,8 +90,8 @@ SINGLE = (  # part, quantity, label, unit, printed, half a unit, case, key, fact
     ("Table 1", "Hertz, R = 0.14 m", "peak pressure", "MPa", 163.9, 0.05, "hertz/peak-pressure", "value", 1e-6),  # noqa: E501
     ("Fig. 4", "correlation radius", "autocorrelation 10 %", "µm", 104.0, 0.5, "reproduction/fig4-correlation", "radius (um)", 1.0),  # noqa: E501
     ("Fig. 4", "rms slope", "0.084 µm", "deg", 0.125, 5e-4, "reproduction/fig4-slopes", "rms of a component (deg)#0", 1.0),  # noqa: E501
-    ("Fig. 4", "rms slope", "1.68 µm", "deg", 2.5, 5e-3, "reproduction/fig4-slopes", "rms of a component (deg)#1", 1.0),  # noqa: E501
-    ("Fig. 4", "largest slope", "1.68 µm, mean of the largest", "deg", 6.5, 0.05, "reproduction/largest-slope", "largest gradient (deg)", 1.0),  # noqa: E501
+    ("Fig. 4", "rms slope", "1.680 µm", "deg", 2.5, 5e-3, "reproduction/fig4-slopes", "rms of a component (deg)#1", 1.0),  # noqa: E501
+    ("Fig. 4", "largest slope", "1.680 µm, mean of the largest", "deg", 6.5, 0.05, "reproduction/largest-slope", "largest gradient (deg)", 1.0),  # noqa: E501
     ("Fig. 8", "τ/H + β, Eq. (11)", "arithmetic of the formula", "", 0.1, 0.05, "reproduction/eq11", "Eq. (11)", 1.0),  # noqa: E501
     ("Fig. 8", "ψ(0.5 µm), Eq. (12)", "ε = 3.15 µm as printed", "", 1.0, 0.5, "reproduction/fig8-threshold", "psi at 0.5 um as printed", 1.0),  # noqa: E501
     *(
@@ -135,7 +135,7 @@ def _single(cases: Cases) -> Iterator[Number]:
             yield _of_inputs(found, *_smooth(quantity, label, cases))
 
 
-SLOPES = {"0.084 µm": math.hypot(0.5 / 84, 0.5 / 104), "1.68 µm": math.hypot(0.5 / 1680, 0.5 / 104)}
+SLOPES = {"0.084 µm": math.hypot(0.5 / 84, 0.5 / 104), "1.680 µm": math.hypot(0.5 / 1680, 0.5 / 104)}
 """Relative uncertainty of rms slopes, which go with sigma / l, by the last digits of both."""
 HERTZ = {"contact radius a0": ("A", 0.5), "peak pressure": ("p_max", 1.0)}  # number, power of it
 
@@ -183,7 +183,7 @@ def _table3(
         n = Number(
             "Table 3",
             quantity,
-            f"σ_e {sigma:.3g} µm, {mesh:.0f}²",
+            f"{column_of(sigma)}, {mesh:.0f}²",
             unit,
             factor * printed,
             factor * ours,
@@ -193,6 +193,19 @@ def _table3(
         )
         found.append(_of_inputs(n, *_effects(inputs, name, sigma)))
     return found
+
+
+BALL = 0.084
+"""Rms roughness of the ball in the rough columns of Table 3 (um)."""
+
+
+def column_of(sigma_e: float) -> str:
+    """Return the name of Table 3's column: the half-space's rms roughness, of an equivalent one (um).
+
+    >>> column_of(0.0), column_of(0.510952)
+    ('smooth', '0.504 µm')
+    """
+    return f"{math.sqrt(sigma_e**2 - BALL**2):.3f} µm" if sigma_e > 0 else "smooth"
 
 
 def _half_digit(value: float) -> float:

@@ -15,12 +15,14 @@ from reports.findings import MISSING, by_claim, filled, note
 from reports.results import Case, worst
 
 NOT_ESTABLISHED = "not established"
+CONDITIONAL = "confirmed with conditions"
 VERDICTS = (
     NOT_ESTABLISHED,
     "not confirmed",
     "erratum proposed",
+    "print or conversion",
     ROUNDED,
-    "confirmed with conditions",
+    CONDITIONAL,
     "confirmed",
     "by construction",
     "definition",
@@ -42,6 +44,7 @@ class Claim:
     holds: Sequence[str] = ()
     corrected: Sequence[str] = ()
     finding: str = ""
+    condition: str = ""
     own: bool = False
     part: str = ""
 
@@ -116,10 +119,12 @@ def _judged(
     found = [c for c in known if any(fnmatchcase(c["id"], pattern) for pattern in claim.evidence)]
     said = next((note(case) for case in found if recorded(case) is not None), "")
     finding = filled(claim.finding, by_name) or said
+    finding = said if MISSING in finding and said else finding
+    verdict = _verdict(claim, found, by_name, groups)
     return Judged(
         claim,
-        _verdict(claim, found, by_name, groups),
-        said if MISSING in finding and said else finding,
+        verdict,
+        f"{finding}. Condition: {claim.condition}" if verdict == CONDITIONAL else finding,
         found,
         [corrections[name] for name in claim.corrected if name in corrections],
     )

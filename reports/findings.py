@@ -1,8 +1,7 @@
 """Sentences with numbers from cases: ``{case | key | format}`` in a text becomes the case's number.
 
 A key is "value", "error", or a name in the case's data; ``#`` goes one step into a list or table ("margin#2",
-"numbers#mu") or takes "max", the largest magnitude of a list. "a + 2 b#max" is the largest upper end of the
-intervals of means "a" with standard errors "b".
+"numbers#mu") or takes "max", the largest magnitude of a list.
 """
 
 from __future__ import annotations
@@ -74,9 +73,6 @@ def number(case: Case, key: str) -> float | None:
         found: Any = case[key]
     elif key in ("#below 2", "#readings"):
         found = _readings(case["data"], below=key == "#below 2")
-    elif " + 2 " in key:
-        mean, error = (case["data"].get(name, ()) for name in key.removesuffix("#max").split(" + 2 "))
-        found = max((m + 2 * e for m, e in zip(mean, error, strict=True)), default=None)
     else:
         found = _step_by_step(case["data"], key.split("#"))
     return float(found) if isinstance(found, int | float) and not isinstance(found, bool) else None

@@ -67,9 +67,8 @@ class FrontPage:
 
     @property
     def roughness(self) -> Sequence[str]:
-        """The columns' equivalent roughness."""
-        labels = (n.label.partition(",")[0].removeprefix("σ_e ") for n in self.table3)
-        return list(dict.fromkeys(labels))
+        """The columns by the half-space's roughness."""
+        return list(dict.fromkeys(n.label.partition(",")[0] for n in self.table3))
 
 
 def front_page(evidence: Evidence, claims: Sequence[Judged], numbers: Sequence[Number]) -> FrontPage:
@@ -154,10 +153,10 @@ def _coverage(studies: Mapping[str, Any]) -> list[str]:
         row for row in studies.get("coverage_corrected", {}).get("table", ()) if row["number"] in COVERED
     ]
     said = [
-        f"{COVERED[row['number']]} {percent(row['held_of_usable'])}, {percent(row['usable'])}, "
+        f"{COVERED[row['number']]} {percent(row['held'])}, {percent(row['usable'])}, "
         f"{number(row['median_bar_over_error'], 2)}"
         for row in table
-        if row["class"] is None and row["held_of_usable"] is not None
+        if row["class"] is None
     ]
     missed = [
         f"{COVERED[row['number']]} of {row['class']} ({percent(row['held'])})"
@@ -168,7 +167,7 @@ def _coverage(studies: Mapping[str, Any]) -> list[str]:
         return []
     return [
         "95 % error bars of single grids against far finer grids of the same solver, on random scenes: "
-        "share of usable bars that hold, share that is usable (at most half of the number, so bounded), "
+        "share that covers, share that is usable (at most half of the number, so bounded), "
         f"median of bar over error: {'; '.join(said)}. "
         f"Classes where coverage fails: {', '.join(missed) or 'none'}"
     ]

@@ -28,7 +28,7 @@ FENCE = re.compile(r"^```(\w+)(?: (\S+))?\n(.*?)^```$", flags=re.M | re.S)
 NUMBER = r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 PIECES = re.compile(rf"({NUMBER})|(\.\.\.)|(\s+)|(.)", flags=re.S)
 STATUS = ' || echo "status $?"'
-LANGUAGES = ("python", "text", "console", "toml", "json", "c", "octave", "julia", "bibtex")
+LANGUAGES = ("python", "text", "console", "toml", "json", "bibtex")
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from reports import result_files
 from tests.documents import ROOT, agree
 from verification.cases.appendix_a import half_space
+from verification.output import result_files
 
 EXAMPLES = {
     "first_result": (["64"], "mu = 0.1189 +- 0.0019, A = ... mm^2, p_max = 0.800 GPa (converged)"),

@@ -18,7 +18,7 @@ import pytest
 from tests.layers import ROOT
 from tests.prose import paragraphs, plain, too_long, visible
 
-PACKAGES = ("refimpl", "appendix_a", "verification", "reports")
+PACKAGES = ("refimpl", "appendix_a", "verification", "reports", "output")
 LANGUAGE = tomllib.loads((ROOT / "tests/language.toml").read_text(encoding="utf-8"))
 PATTERNS, WORDS = LANGUAGE["pattern"], LANGUAGE["names"]
 FILES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
@@ -34,6 +34,8 @@ EXCEPTIONS: dict[tuple[str, str], str] = {
     ("verification/cases/contact/rough_planes.py", "summit"): SUMMITS,
     ("verification/cases/contact/rough_planes.py", "summits"): SUMMITS,
     ("verification/solver_suite/check.py", "left out"): FAULT,
+    ("verification/cases/contact/rough_theories.py", "summits"): SUMMITS,
+    ("verification/exact/rough_plane.py", "summits"): SUMMITS,
     ("verification/exact/greenwood_tripp.py", "summit"): SUMMITS,
     ("verification/exact/greenwood_tripp.py", "summits"): SUMMITS,
     ("verification/reproduction/fig6.py", "summit"): SUMMITS,
@@ -145,8 +147,8 @@ def prose() -> dict[str, list[str]]:
 
 
 PROSE = prose()
-UNREAD = {"paper.toml", *(name for name in PROSE if name.endswith(".html"))}
-"""Texts of the report, which do not keep to the lengths yet."""
+UNREAD = {"paper.toml"}
+"""Findings of the paper's claims, which do not keep to the lengths yet."""
 
 LONG: dict[tuple[str, str], str] = {}
 """Reasons, by text and beginning of a long sentence or paragraph; 40 at most."""

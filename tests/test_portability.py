@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import json
 import os
-import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -20,7 +19,7 @@ from tests.documents import ROOT
 from tests.refimpl.surfaces.measured import ROUGH, write_x3p
 from tests.verification.cli.commands import SCENE, STUDY, refused
 
-PACKAGES = ("refimpl", "appendix_a", "verification", "reports", "examples")
+PACKAGES = ("refimpl", "appendix_a", "verification", "reports", "output", "examples")
 
 # Imported by every Python that the test starts, workers and readers among them. Two libraries that ask other
 # systems in other ways keep what they read on Linux.
@@ -53,7 +52,6 @@ JOBS = {
     "solve scene.toml --grid 16 --plot s.png --patches s.csv --npz s.npz --vtk s.vtu --json s.json": 0,
     "inspect a.x3p --unit m --pixel-size 1e-6 --json i.json": 0,
     "identify scene.toml data.csv --grid 16 --json f.json": 0,
-    "keys --markdown keys.md": 0,
     "verify --only hertz/peak-pressure --jobs 1 --json results.json": 0,
     "report --results results.json --committed committed --output report": 0,
     "verify --solver verification.solver_suite.own:solve --only solver/one-element": 0,
@@ -92,7 +90,6 @@ def test_every_subcommand_runs_without_what_only_posix_has(tmp_path: Path) -> No
     for name, text in files.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     (tmp_path / "committed").mkdir()
-    shutil.copy(ROOT / "docs/scene-file.md", tmp_path / "keys.md")
     if find_spec("SurfaceTopography"):
         write_x3p(tmp_path / "a.x3p", ROUGH)
     else:  # not built for every system

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from reports.result_files import committed
 from tests.documents import ROOT
 from verification.benchmarks.codes import OWN, SHEARED, SLOPED
 from verification.benchmarks.page import EVERY, PEER, QUICKEST, Number, Ratios, Rows, newest, over, table
+from verification.output.result_files import committed
 
 PAGE = (ROOT / "docs/costs.md").read_text(encoding="utf-8")
 RUNS = committed("benchmarks")["runs"]

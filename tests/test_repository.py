@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from reports.result_files import FOLDER, SUFFIX, name_of, result_paths
 from tests.documents import ROOT
+from verification.output.result_files import FOLDER, SUFFIX, name_of, result_paths
 
 MOST_BYTES = 500_000  # of a file
 MOST_BYTES_IN_ALL = 6_000_000

@@ -30,7 +30,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from refimpl.accuracy.bayesian_line import DEFAULT_ORDER, Bias, Estimate, Prior, fit_line
-from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD
+from refimpl.accuracy.constants import constant, table
 from refimpl.accuracy.first_contact import (
     HERTZ_EXPONENTS,
     at_first_contact,
@@ -51,32 +51,59 @@ from refimpl.accuracy.scatter import (
 )
 from refimpl.grid import Array
 
-# c0, s_c: the parabola of a pressure peaks too high, over its curvature drop
-PEAK_BIAS, PEAK_BIAS_SPREAD = 0.028, 0.009
 _DIVERGED = 1e100  # in SI units; squares are still doubles
 
-AREA = Prior(1.0, 6.0)  # unit: `area_scatter`
-BULK = Prior(0.003, 1.0)  # friction without tau's share; unit: value (edge / area)^1.5
-PEAK = Prior(0.008, 2.5)  # unit: the peak's curvature drop
-# scatter of p_max where straight edges move as a whole, over its value and their share of the area squared:
-# bars hold 142 of 144 peaks of grooves, and 135 without
-PEAK_STRAIGHT = 0.5
-BINORMAL = Prior(0.0002, 1.0)  # unit: normal force (edge / area)^1.5
-OTHER = Prior(0.02, 2.0)  # unit: value (edge / area)^1.5
-# 95 %: approach of a contact that ends at a free border, over depth and border fraction; full contacts of
-# squares and of 2 : 1 on 32 to 256 elements are 0.083 to 0.086 from their limit
-BORDER_BOUND = 0.13
-# scatter of mu over `slope_scatter`: 95 % of a single grid are 2.5 of it; of 189 grids where it matters 97 %
-# are within 1.5, and 1.4 are the standard error where slopes of neighbours are unrelated
-SLOPE_SHARE = 0.2
-# scatter of the approach over `gap_scatter`: bars hold 95 % of 138 nearly full contacts and of 229 grooves
-GAP_SHARE = 0.15
-HIDDEN_GAP = 0.4  # 95 %: approach by gaps that no element shows, over `hidden_gap`; of 24 scenes 0.42
-SLOPE_BOUND = 0.35  # the like by differenced slopes, over `slope_displacement_error`: of 38 scenes 0.24
-SHEAR_BOUNDS = {"approach": 0.6, "normal_force": 1.2, "max_pressure": 0.6}
+_UNMEASURED = 4.5  # elements of a contact
+EXCESS_SPREAD = constant("excess_spread")  # standard deviation of all faces' excess together, over it
+AREA = Prior(1.0, constant("area_freedom"))  # unit: `area_scatter`
+# c0, s_c: the parabola of a pressure peaks too high, over its curvature drop
+PEAK_BIAS, PEAK_BIAS_SPREAD = constant("peak_bias"), constant("peak_bias_spread")
+# unit: the peak's curvature drop; value times the share of straight edges squared, which move as a whole
+PEAK_SCATTER, PEAK_FREEDOM = table("peak_scatter"), constant("peak_freedom")
+# units of friction without tau's share, and of Q: each of `rest_sizes`
+BULK_SCATTER, BULK_FREEDOM = table("bulk_scatter"), constant("bulk_freedom")
+BINORMAL_SCATTER, BINORMAL_FREEDOM = table("binormal_scatter"), constant("binormal_freedom")
+APPROACH_SCATTER = table("approach_scatter")  # units: `approach_sizes`
+APPROACH_FREEDOM = constant("approach_freedom")
+HIDDEN_GAP = constant("hidden_gap_bound")  # 95 %: approach by gaps that no element shows, over `hidden_gap`
+FORCE = Prior(constant("force_scatter"), constant("force_freedom"))  # unit: value (edge / area)^1.5
+SHEAR_BOUNDS = {
+    name: constant(f"shear_bound_{name}") for name in ("approach", "normal_force", "max_pressure")
+}
 """95 % bounds of the change by tau on the contact's edge, over its change of the depth: of the approach under
 a load, of the others at an approach. Set so that a smooth ball under tau of 0.7 of its pressure stays within
 its bars, and judged on random scenes (`verification.cases.error_bars.pulled`)."""
+
+
+def rest_sizes(results: Sequence[GridFeatures]) -> Array:
+    """Return units of the scatter of mu without tau's share on each grid, shape (4, grids).
+
+    Edge fraction to the power 3/2, times mu; slopes within elements, each by itself and in phase; slopes at a
+    free border.
+    """
+    mu = abs(results[-1].numbers["friction_coefficient"])
+    slopes = (slope_scatter(results, name) for name in ("slope_sampling_error", "slope_line_error"))
+    return np.array([edge_scatter(results) * mu, *slopes, [border_slopes(result) for result in results]])
+
+
+def approach_sizes(results: Sequence[GridFeatures]) -> Array:
+    """Return units of the scatter of an approach under a load on each grid (m), shape (5, grids).
+
+    The contact's edge, as peaks err; the gap's; a free border, where the pressure of a contact that is cut
+    off is singular as under a punch (order h); differences that slopes are (order h^2); first contact.
+    """
+    last = results[-1]
+    unit = max(abs(last.numbers["approach"]), last.depth)
+    edges = zip(results, edge_scatter(results), strict=True)
+    return np.array(
+        [
+            [result.peak.widened(edge * unit, 0.5) for result, edge in edges],
+            [gap_scatter(result) for result in results],
+            [result.border_fraction * result.depth for result in results],
+            [result.slope_displacement_error for result in results],
+            [first_contact_error(result) for result in results],
+        ]
+    )
 
 
 class _Grids:
@@ -105,13 +132,15 @@ class _Grids:
             [r.peak.widened(t * unit, 0.5) for r, t in zip(self.results, self.edge_scatter, strict=True)]
         )
 
-    def smooth(self, values: Array, prior: Prior, *sizes: Array, bias: Bias | None = None) -> Estimate:
-        """Estimate from ``values`` that scatter by ``prior.scatter`` times the first of ``sizes``, and the
-        others."""
-        size = np.hypot.reduce([prior.scatter * sizes[0], *sizes[1:]])
+    def smooth(
+        self, values: Array, freedom: float, scales: Array, sizes: Array, bias: Bias | None = None
+    ) -> Estimate:
+        """Estimate from ``values`` that scatter by the root of the sum of squared ``scales`` times
+        ``sizes`` (parts, grids)."""
+        size = np.hypot.reduce(scales[:, None] * sizes)
         if math.isinf(size[-1]):
             return Estimate(float(values[-1]), math.inf)
-        return fit_line(values, _weights(size, self.spacing), prior._replace(scatter=float(size[-1])), bias)
+        return fit_line(values, _weights(size, self.spacing), Prior(float(size[-1]), freedom), bias)
 
 
 def estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
@@ -145,9 +174,8 @@ def _estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
     grids = _Grids([at_first_contact(result) for result in results])
     area, load = _area(grids), grids.finest("normal_force")
     dmu_dA = grids.each(lambda result: result.dmu_dA)
-    slopes = slope_scatter(grids.results), grids.each(border_slopes)
-    oblique = grids.each(lambda result: result.rms_slope > 0)  # without slopes Q is zero
-    across = [size * load for size in (grids.edge_scatter * oblique, *slopes)]
+    across = load * rest_sizes(grids.results)
+    across[0] = load * grids.edge_scatter * grids.each(lambda result: result.rms_slope > 0)  # else Q is zero
     found = {
         "friction_coefficient": _sheared(grids, "friction_coefficient", area, dmu_dA, 1.0),
         "friction_force": _sheared(grids, "friction_force", area, dmu_dA * grids.found("normal_force"), load),
@@ -155,17 +183,16 @@ def _estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
         "contact_area_corrected": area,
         "plastic_area": plastic_area(grids.results[-1]),
         "max_pressure": _peak(grids),
-        "binormal_force": grids.smooth(grids.found("binormal_force"), BINORMAL, *across),
+        "binormal_force": grids.smooth(
+            grids.found("binormal_force"), BINORMAL_FREEDOM, BINORMAL_SCATTER, across
+        ),
     }
     found |= {name: found[raw] for name, raw in CORRECTED.items()}
     last = grids.results[-1]
     if last.loaded:
         by_shear = SHEAR_BOUNDS["approach"] * last.shear_by_edge * last.depth
-        by_border = BORDER_BOUND * last.border_fraction * last.depth
-        by_slopes = SLOPE_BOUND * last.slope_displacement_error
         by_gaps = HIDDEN_GAP * last.hidden_gap
-        bound = math.hypot(by_shear, by_border, by_slopes, by_gaps)
-        return found | {"approach": _approach(grids).widened(bound)}
+        return found | {"approach": _approach(grids).widened(math.hypot(by_shear, by_gaps))}
     bounds = first_contact_bounds(last)
     widened = {name: estimate.widened(bounds.get(name, 0.0)) for name, estimate in found.items()}
     widened["normal_force"] = _force(grids)
@@ -177,9 +204,7 @@ def _estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
 def _sheared(grids: _Grids, name: str, area: Estimate, share: Array, unit: float) -> Estimate:
     """A number that contains ``share`` times the contact area, and slopes times ``unit``."""
     values = grids.found(name) - share * grids.found("contact_area")
-    slopes = SLOPE_SHARE * slope_scatter(grids.results) * unit
-    by_border = grids.each(border_slopes) * unit
-    rest = grids.smooth(values, BULK, grids.edge_scatter * grids.finest(name), slopes, by_border)
+    rest = grids.smooth(values, BULK_FREEDOM, BULK_SCATTER, unit * rest_sizes(grids.results))
     per_area = float(share[-1])
     return Estimate(rest.value + per_area * area.value, rest.half_width).widened(per_area * area.half_width)
 
@@ -196,23 +221,23 @@ def _peak(grids: _Grids) -> Estimate:
     bias = Bias(drop, 0.0 if grids.results[-1].grid.band_limited else PEAK_BIAS, PEAK_BIAS_SPREAD)
     size = grids.each(lambda result: result.peak.widened(result.peak.curvature_drop))
     heights = grids.each(lambda result: result.peak.height)
-    along = PEAK_STRAIGHT * heights * grids.each(straight_share) ** 2
-    return grids.smooth(heights, PEAK, size, along, bias=bias)._replace(orders=(2.0, 2.0))
+    along = heights * grids.each(straight_share) ** 2
+    found = grids.smooth(heights, PEAK_FREEDOM, PEAK_SCATTER, np.array([size, along]), bias)
+    return found._replace(orders=(2.0, 2.0))
 
 
 def _approach(grids: _Grids) -> Estimate:
     """The approach under a load, counted from the first contact of the surfaces themselves."""
     values = grids.found("approach") + grids.each(lambda result: result.first_contact.height)
-    scatter = grids.peak_scatter(max(grids.finest("approach"), grids.results[-1].depth))
-    gap = GAP_SHARE * grids.each(gap_scatter)
-    return grids.smooth(values, OTHER, scatter, grids.each(first_contact_error), gap)
+    return grids.smooth(values, APPROACH_FREEDOM, APPROACH_SCATTER, approach_sizes(grids.results))
 
 
 def _force(grids: _Grids) -> Estimate:
     """The force at an approach, with the error of first contact by its exponent of the approach."""
     load = grids.finest("normal_force")
-    size = HERTZ_EXPONENTS["normal_force"] * load * grids.each(first_contact_share)
-    return grids.smooth(grids.found("normal_force"), OTHER, grids.peak_scatter(load), size)
+    sizes = grids.peak_scatter(load), HERTZ_EXPONENTS["normal_force"] * load * grids.each(first_contact_share)
+    scales = np.array([FORCE.scatter, 1.0])
+    return grids.smooth(grids.found("normal_force"), FORCE.weight, scales, np.array(sizes))
 
 
 def _weights(size: Array, spacing: Array) -> Array:
@@ -242,6 +267,12 @@ def discretisation(results: Sequence[GridFeatures]) -> dict[str, dict[str, float
 
 
 def _area(grids: _Grids) -> Estimate:
-    """Contact area: the excess along the edge is a regressor, and the scatter is that of a count."""
-    bias = Bias(grids.each(lambda result: result.excess), 1.0, EDGE_SIZE_SPREAD / EDGE_SIZE)
-    return grids.smooth(grids.found("contact_area"), AREA, grids.each(area_scatter), bias=bias)
+    """Contact area: the excess along the edge is a regressor, and the scatter is that of a count.
+
+    Of a contact of four elements or fewer no face tells how much of them is in contact: its bar is all of it.
+    """
+    bias = Bias(grids.each(lambda result: result.excess), 1.0, EXCESS_SPREAD)
+    scatter = grids.each(area_scatter)[None]
+    found = grids.smooth(grids.found("contact_area"), AREA.weight, np.ones(1), scatter, bias)
+    area, dA = grids.finest("contact_area"), grids.results[-1].grid.element_area
+    return found.widened(area) if area < _UNMEASURED * dA else found

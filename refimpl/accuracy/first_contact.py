@@ -11,10 +11,11 @@ import math
 import sys
 from dataclasses import replace
 
+from refimpl.accuracy.constants import constant
 from refimpl.accuracy.grid_features import GridFeatures
 
-PEAK_ERROR = 0.02  # standard deviation of the peak of a gap, over its curvature drop
-CREST_ERROR = 0.15  # the like on a sharp crest, whose tip lies above the parabola: bounds 0.65, 0.5 found
+# standard deviation of the peak of a gap, over its curvature drop; on a sharp crest, whose tip lies above it
+PEAK_ERROR, CREST_ERROR = constant("first_contact_smooth"), constant("first_contact_crest")
 HERTZ_EXPONENTS = {
     "normal_force": 1.5,
     "binormal_force": 1.5,

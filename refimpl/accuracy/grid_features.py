@@ -8,14 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from refimpl.accuracy.contact_edge import (
-    BORDER_EXCESS,
-    EDGE_SIZE,
-    NO_OFFSET,
-    STRAIGHT_EXCESS,
-    EdgeOffset,
-    edge_offset,
-)
+from refimpl.accuracy.constants import constant, table
+from refimpl.accuracy.contact_edge import NO_FACES, edge_faces
 from refimpl.accuracy.iteration_error import CORRECTED, merged, reported_numbers
 from refimpl.accuracy.peak import NO_PEAK, Peak, deepest, highest, on_crest
 from refimpl.grid import Array, Grid, inner, second_differences
@@ -27,6 +21,10 @@ from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 
+EXCESS = np.array(
+    [*table("face_excess").ravel(), constant("straight_excess"), constant("border_excess")]
+)
+"""Elements by which a counted area exceeds, of each of `GridFeatures.excess_terms`."""
 _LEVELS = 16  # pressures in `highest_areas`
 _TROUGH_ERROR = 0.05  # error of a parabola's trough over its second differences, where no gap was missed
 
@@ -41,12 +39,14 @@ class GridFeatures:
     symmetry_multiplicity : how many edge elements come in and out together by symmetry
     peak : of the pressure (Pa)
     first_contact : peak of the gap turned over (m), from which approaches count
-    slope_sampling_error : how far slopes within elements leave mu open
+    slope_sampling_error : error of mu by slopes within elements
+    slope_line_error : the like of elements in phase along straight walls and crests
     dmu_dA : ``tau / N`` (1/m^2)
     parts : uncertainties that the grid's own solution states (iteration, active set, neglected terms)
-    offset : of the contact's edge within its elements
+    faces : of the contact's edge by kind (`contact_edge`)
     depth : how far tractions pressed the contact in (m)
-    shear_to_normal_ratio : ``|c / a| tau A / N``: tau's displacement over the pressure's
+    shear_to_normal_ratio : ``|c / a| tau A / N``: tau's displacement over the pressure's; of a law that is
+        not linear all shear's
     plastic_edge : the like along the edge of the elements at the hardness (m^2)
     straight : edges of the contact along the grid
     plastic_straight : the like of the elements at the hardness
@@ -72,7 +72,8 @@ class GridFeatures:
     slope_sampling_error: float
     dmu_dA: float
     parts: Mapping[str, Mapping[str, float]]
-    offset: EdgeOffset = NO_OFFSET
+    slope_line_error: float = 0.0
+    faces: tuple[float, ...] = NO_FACES
     depth: float = 0.0
     shear_to_normal_ratio: float = 0.0
     plastic_edge: float = 0.0
@@ -112,20 +113,26 @@ class GridFeatures:
 
         Elements at the hardness carry as much as their area can: the excess is at most what others do not.
         """
-        area, dA = self.numbers["contact_area"], self.grid.element_area
-        if not area > 0:
+        if not self.touching:
             return 0.0
-        border = self.border_fraction * area * (1 - area / self.grid.nominal_area)
-        found = EDGE_SIZE * self.edge + self.offset.excess * dA
-        found += STRAIGHT_EXCESS * self.straight.faces * dA + BORDER_EXCESS * border
+        found = float(EXCESS @ self.excess_terms) * self.grid.element_area
         return found if self.unfilled is None else min(found, self.unfilled)
 
     @property
+    def excess_terms(self) -> Array:
+        """Numbers that the mean excess is made of: faces by kind, faces beyond the second of a run along an
+        axis, elements at which a free border cuts the contact off."""
+        area = self.numbers["contact_area"]
+        border = self.border_fraction * area * (1 - area / self.grid.nominal_area) / self.grid.element_area
+        return np.array([*self.faces, self.straight.faces, border])
+
+    @property
     def corrected(self) -> dict[str, float]:
-        """Friction without tau on the mean excess of the contact area along its edge."""
+        """The contact area without its mean excess along its edge, and friction without tau on that."""
         mu, force = self.numbers["friction_coefficient"], self.numbers["friction_force"]
         share = self.dmu_dA * self.excess
         return {
+            "contact_area_corrected": self.numbers["contact_area"] - self.excess,
             "friction_coefficient_corrected": mu - share,
             "friction_force_corrected": force - share * self.numbers["normal_force"],
         }
@@ -142,20 +149,24 @@ class GridFeatures:
         Approaches of periodic problems do not count from first contact.
         """
         grid, per_area = problem.grid, friction_per_area(problem.friction, state.forces.normal)
+        by_tau = per_area * state.contact_area
+        sheared = by_tau if problem.friction.is_linear else abs(state.friction_coefficient)
         parts, total = merged(*stated), float(state.pressure.sum()) * grid.element_area
+        slopes_apart, slopes_in_phase = slope_sampling_error(state.pressure, state.slopes, grid)
         features = cls(
             grid=grid,
             numbers=reported_numbers(problem, state),
             edge=state.contact_area - state.contact_area_corrected,
-            offset=edge_offset(state.pressure, state.clearance, grid),
+            faces=edge_faces(state.pressure, state.clearance, grid),
             symmetry_multiplicity=symmetry_multiplicity(state.contact, grid),
             peak=pressure_peak(problem, state),
             first_contact=first_contact(problem),
-            slope_sampling_error=slope_sampling_error(state.pressure, state.slopes, grid),
+            slope_sampling_error=slopes_apart,
+            slope_line_error=slopes_in_phase,
             dmu_dA=per_area,
             parts=parts | {name: parts[raw] for name, raw in CORRECTED.items() if raw in parts},
             depth=depth(problem, state),
-            shear_to_normal_ratio=abs(problem.elasticity.coupling_ratio) * per_area * state.contact_area,
+            shear_to_normal_ratio=abs(problem.elasticity.coupling_ratio) * sheared,
             plastic_edge=state.plastic_area - perimeter_corrected_area(state.plastic, grid),
             straight=straight_edges(state.contact, grid),
             plastic_straight=straight_edges(state.plastic, grid),
@@ -284,25 +295,46 @@ def slope_displacement_error(problem: Problem, state: State) -> float:
     return math.prod(map(math.sqrt, squares)) / 6
 
 
-def slope_sampling_error(pressure: Array, slopes: Slopes, grid: Grid) -> float:
+def slope_sampling_error(pressure: Array, slopes: Slopes, grid: Grid) -> tuple[float, float]:
     """Return the standard error of mu, or of Q/N, if slopes within elements vary as much as between them.
 
     That is ``sqrt(sum (f s)^2) / sum f`` with ``s^2 = (b_x^2 + b_y^2) / 6``, for a tangent that differs by b
     / 2 from the mean of its neighbours along x and y; the mean square of both tangents is taken. Where a
     surface is resolved it falls as h^3. Where slopes are uncorrelated between elements it is 1.4 times the
-    standard error of their mean.
+    standard error of their mean. The second number is of errors that add before they are squared, as along a
+    straight wall or crest, where all elements meet the surface in the same phase (`_in_phase`).
 
     >>> bump = Slopes(np.pad([[1.0]], 1), np.zeros((3, 3)))
-    >>> round(12 * slope_sampling_error(np.pad([[7.0]], 1), bump, Grid.square(1.0, 3)) ** 2, 9)  # bends of 2
-    8.0
+    >>> found = slope_sampling_error(np.pad([[7.0]], 1), bump, Grid.square(1.0, 3))
+    >>> [round(12 * error**2, 9) for error in found]  # bends of 2
+    [8.0, 8.0]
     """
     total = float(pressure.sum())
     if slopes.is_flat or not total > 0:
-        return 0.0
+        return 0.0, 0.0
     box = grid.window_around(pressure > 0, margin=1).slices
     loads = [
         pressure[box] * second_differences(tan[box], axis, periodic=grid.periodic)
         for tan in (slopes.tan_x, slopes.tan_y)
         for axis in (0, 1)
     ]
-    return math.sqrt(sum(inner(load, load) for load in loads) / 12) / total
+    apart = sum(inner(load, load) for load in loads)
+    together = float(np.max(sum(_in_phase(load) for load in loads)))
+    return math.sqrt(apart / 12) / total, math.sqrt(together / 12) / total
+
+
+def _in_phase(load: Array) -> Array:
+    """Squares of the sums along lines, summed over the lines of each axis and diagonal.
+
+    Each counts with the square of its share of what it would be if all of the line's loads were equal.
+    """
+    i, j = (np.arange(count) for count in load.shape)
+    found = []
+    for lines in (i[:, None] + 0 * j, 0 * i[:, None] + j, i[:, None] + j, i[:, None] - j + len(j)):
+        sums, squares, counts = (
+            np.bincount(lines.ravel(), weights=field.ravel()) for field in (load, load**2, load != 0)
+        )
+        equal = counts * squares
+        share = np.divide(sums**2, equal, out=np.zeros_like(sums), where=equal > 0)
+        found.append(float(np.sum(sums**2 * share**2)))
+    return np.array(found)

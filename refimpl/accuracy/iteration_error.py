@@ -13,15 +13,16 @@ import numpy as np
 
 from refimpl.model.certificate import State
 from refimpl.model.forces import contact_area
-from refimpl.model.friction import friction_per_area
+from refimpl.model.friction import FrictionLaw, friction_per_area
 from refimpl.model.problem import Problem
 
-AREAS = "contact_area", "contact_area_corrected"  # both depend on the same elements
 CORRECTED = {
+    "contact_area_corrected": "contact_area",
     "friction_coefficient_corrected": "friction_coefficient",
     "friction_force_corrected": "friction_force",
 }
-"""Friction without tau on the mean excess of the contact edge, by the number that it is subtracted from."""
+"""Numbers without the mean excess of the contact edge, by the number that it is subtracted from."""
+_SHEARED = "friction_coefficient", "friction_force"
 Parts = dict[str, float]
 Uncertainty = dict[str, Parts]
 
@@ -33,7 +34,6 @@ def reported_numbers(problem: Problem, state: State) -> dict[str, float]:
     return {
         "friction_coefficient": state.friction_coefficient,
         "contact_area": state.contact_area,
-        "contact_area_corrected": state.contact_area_corrected,
         "plastic_area": state.plastic_area,
         "max_pressure": state.max_pressure,
         "approach": state.approach - problem.datum,
@@ -41,6 +41,16 @@ def reported_numbers(problem: Problem, state: State) -> dict[str, float]:
         "friction_force": state.forces.friction,
         "binormal_force": state.forces.binormal,
     }
+
+
+def without_rule(law: FrictionLaw) -> tuple[str, ...]:
+    """Return the numbers whose error bars no rule gives: what an element too many adds is known of tau alone.
+
+    Where ``r - slope f`` falls to zero with the pressure, errors along the contact's edge are of another
+    order.
+    """
+    corrected = tuple(name for name, raw in CORRECTED.items() if raw in _SHEARED)
+    return () if law.is_linear else (*_SHEARED, *corrected)
 
 
 def iteration_parts(problem: Problem, state: State) -> Uncertainty:
@@ -71,7 +81,7 @@ def iteration_parts(problem: Problem, state: State) -> Uncertainty:
         parts["max_pressure"] = {"iteration": 0.0}
     if problem.load is not None and state.plastic_area == state.contact_area > 0:
         parts["approach"]["not unique"] = _approach_interval(state)
-    parts |= {name: {"iteration": area} for name in AREAS}
+    parts["contact_area"] = {"iteration": area}
     turned = math.sqrt(state.slopes.mean_square(state.pressure)) * normal
     friction = residual * (abs(state.forces.friction) + turned) + problem.friction.jump * area
     parts["friction_force"] = {"iteration": friction}
@@ -110,7 +120,7 @@ def active_set_parts(problem: Problem, state: State) -> Uncertainty:
     violating = state.certificate.law_violations * problem.grid.element_area
     by_violation = problem.friction.jump * violating / load if load else 0.0
     spread = {"friction_coefficient": by_violation, "friction_force": by_violation * load}
-    spread |= dict.fromkeys(AREAS, violating)
+    spread["contact_area"] = violating
     return {name: {"active set": width} for name, width in spread.items() if width > 0}
 
 

@@ -64,7 +64,7 @@ class Peak:
 
 
 NO_PEAK = Peak(0.0, 0.0, 0.0)
-"""Of a field without relief."""
+"""Peak of a field without relief: no height, no curvature, no error."""
 
 
 def highest(field: Array, grid: Grid) -> Peak:

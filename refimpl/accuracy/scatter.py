@@ -6,42 +6,53 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 
 from refimpl.accuracy.bayesian_line import DEFAULT_ORDER, Estimate
-from refimpl.accuracy.contact_edge import single_element_share
+from refimpl.accuracy.constants import constant, table
+from refimpl.accuracy.contact_edge import KINDS, single_element_share
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.grid import Array
 from refimpl.model.forces import EDGE_SHARE
 
-STRAIGHT_SCATTER = 0.21  # standard deviation over a step; Westergaard's strips: 0.17 to 0.22
+STRAIGHT_SCATTER = constant("straight_scatter")  # standard deviation of a straight edge over a step
 _LEAST_SHARE = 1e-6  # in place of zero
 _LEAST_RESOLVED = 0.2  # share of gaps that are not single elements: a mean gap errs by no more
 _SLOPES = 2  # power of the share that is not single elements, which divides the scatter of slopes
-EDGE_SCATTER, UNEVEN_SCATTER = 0.03, 0.46  # elements per face, and per uneven one
 _ALONE = 5.5  # power of the share of single elements: patches of 2 x 2 have bars of all their area
-STRAIGHT_LEFT = 0.46  # share of `straight_scatter` beyond the mean excess
-# standard deviation of mu by slopes under that pressure, over border fraction and rms slope: the errors there
-BORDER_SLOPES = 0.1
-PLASTIC_SINGLE = 1.5  # further excess of single elements at the hardness, over that of their edge
-PLASTIC_COUNT = 0.36  # 95 % bound of the area at the hardness, over the root of its edge elements
-GAP_STRAIGHT = 3.5  # scatter of a gap's straight edges, over an area's
+_RISING, _NARROW = 4, 5  # first kinds of faces to which pressures do not fall, beyond which gaps do not rise
+AREA_SCATTER = table("area_scatter")  # elements, of each of `area_counts`
+_GAP_STRAIGHT = 3.5  # scatter of a gap's straight edges, over an area's
+PLASTIC_LACK = constant("plastic_lack")  # area that yields in part, over that of the edge
+PLASTIC_SCATTER = table("plastic_scatter")  # scatter at each of `plastic_sizes`
+PLASTIC_FREEDOM = constant("plastic_freedom")  # weight of the prior
+
+
+def area_counts(result: GridFeatures) -> Array:
+    """Return the numbers of elements by which an area scatters about its mean excess, each by its own unit.
+
+    Faces of ordinary edges; those towards which pressures do not fall, beyond which gaps do not rise, and
+    both; elements amid the contact that are undecided, and single ones: as symmetric ones come in and out
+    together. Then straight edges, squared, what uneven faces are of them, and what they are of narrow
+    strips; and all faces towards which pressures do not fall, squared, as they are of one rim.
+    """
+    dA, together = result.grid.element_area, result.symmetry_multiplicity
+    area = result.numbers["contact_area"]
+    faces = np.reshape(result.faces, KINDS).sum(axis=0)
+    falling, rising = faces[:_RISING].sum(axis=0), faces[_RISING:].sum(axis=0)
+    gaps = slice(_NARROW), slice(_NARROW, None)
+    kinds = [side[part].sum() for part in gaps for side in (falling, rising)]
+    single = single_element_share(result.edge, area)
+    alone = area / dA * single**_ALONE
+    straight = result.straight.squares * max(min(together, result.straight.runs), 1)
+    uneven = straight * sum(kinds[1:]) / max(sum(kinds), 1.0)
+    counts = np.array([*kinds, result.undecided / dA, alone])
+    return np.concatenate([counts * together, [straight, uneven, straight * single, rising.sum() ** 2]])
 
 
 def area_scatter(result: GridFeatures) -> float:
-    """Return the standard deviation of the area about its mean excess (m^2).
-
-    Faces and undecided elements scatter as a count of which symmetric ones come in and out together, and
-    uneven faces along a straight edge do. Of other straight edges the mean excess has the greater part. Where
-    elements stand alone, nothing says how much of each is in contact.
-    """
-    dA, area, uneven = result.grid.element_area, result.numbers["contact_area"], result.offset.uneven
-    faces, straight = max(result.edge, 0.0) / EDGE_SHARE / dA, straight_scatter(result) / dA
-    alone = area / dA * single_element_share(result.edge, area) ** _ALONE
-    together = EDGE_SCATTER**2 * (faces + result.undecided / dA) + alone
-    variance = together * result.symmetry_multiplicity + (STRAIGHT_LEFT * straight) ** 2
-    if uneven:
-        variance += UNEVEN_SCATTER**2 * uneven * (1 + (straight / STRAIGHT_SCATTER) ** 2 / faces)
-    return math.sqrt(variance) * dA
+    """Return the standard deviation of the area about its mean excess (m^2)."""
+    return math.sqrt(AREA_SCATTER**2 @ area_counts(result)) * result.grid.element_area
 
 
 def straight_scatter(result: GridFeatures) -> float:
@@ -79,25 +90,30 @@ def gap_scatter(result: GridFeatures) -> float:
         return 0.0
     resolved = max(1 - single_element_share(result.edge, area) ** 2, _LEAST_RESOLVED)
     gap = min(abs(result.mean_gap), max(abs(result.numbers["approach"]), result.depth))
-    shares = result.edge / area / resolved, GAP_STRAIGHT * straight_scatter(result) / area
+    shares = result.edge / area / resolved, _GAP_STRAIGHT * straight_scatter(result) / area
     return gap * math.hypot(*(min(share, 1.0) ** DEFAULT_ORDER for share in shares))
 
 
+def plastic_sizes(fine: GridFeatures) -> Array:
+    """Return sizes of the scatter of the area at the hardness (m^2): a count of its edge elements, its
+    straight edges, and the excess of single elements."""
+    area, dA = fine.numbers.get("plastic_area", 0.0), fine.grid.element_area
+    edge = max(fine.plastic_edge, 0.0)
+    counted = math.sqrt(edge / EDGE_SHARE * dA * fine.symmetry_multiplicity)
+    along = dA * math.sqrt(fine.plastic_straight.squares)
+    return np.array([counted, along, edge, edge * single_element_share(edge, area) ** 2])
+
+
 def plastic_area(fine: GridFeatures) -> Estimate:
-    """Return the area at the hardness: the count of its edge elements, and their excess either way.
-
-    The excess is larger where elements stand alone, as a contact's.
-    """
-    area, edge, dA = fine.numbers.get("plastic_area", 0.0), fine.plastic_edge, fine.grid.element_area
-    counted = math.sqrt(edge / EDGE_SHARE * dA * fine.symmetry_multiplicity) if edge > 0 else 0.0
-    along = 0.5 * dA * math.sqrt(fine.plastic_straight.squares)
-    excess = edge * (1 + PLASTIC_SINGLE * single_element_share(edge, area) ** 2)
-    return Estimate(area, excess + math.hypot(PLASTIC_COUNT * counted, along))
+    """Return the area at the hardness, to which elements that yield in part add a share of its edge."""
+    area, lack = fine.numbers.get("plastic_area", 0.0), PLASTIC_LACK * max(fine.plastic_edge, 0.0)
+    deviation = float(np.hypot.reduce(PLASTIC_SCATTER * plastic_sizes(fine)))
+    return Estimate(area + lack, deviation * float(scipy.special.stdtrit(PLASTIC_FREEDOM, 0.975)))
 
 
-def slope_scatter(results: Sequence[GridFeatures]) -> Array:
+def slope_scatter(results: Sequence[GridFeatures], name: str = "slope_sampling_error") -> Array:
     """Return how far slopes within elements leave mu open: all of it where patches are single elements."""
-    uneven = np.array([result.slope_sampling_error for result in results])
+    uneven = np.array([getattr(result, name) for result in results])
     whole = abs(results[-1].numbers["friction_coefficient"])
     single = np.array([single_element_share(r.edge, r.numbers["contact_area"]) for r in results])
     resolved = np.maximum(1 - single**2, _LEAST_SHARE) ** _SLOPES
@@ -106,5 +122,5 @@ def slope_scatter(results: Sequence[GridFeatures]) -> Array:
 
 
 def border_slopes(result: GridFeatures) -> float:
-    """Return how far slopes under a pressure that a free border cuts off leave mu open."""
-    return BORDER_SLOPES * result.border_fraction * result.rms_slope
+    """Return the unit of mu's error by slopes under a pressure that a free border cuts off."""
+    return result.border_fraction * result.rms_slope

@@ -13,7 +13,7 @@ from refimpl.model.problem import Terms
 from refimpl.planning.plan import DECISION_GRID, METHODS, Method, Plan, make_plan, memory_of
 from refimpl.scene.discretise import Discretiser
 from refimpl.scene.scene import Scene
-from refimpl.solution.quantities import check_target
+from refimpl.solution.quantities import check_has_bar, check_target
 from refimpl.solution.solution import Solution
 from refimpl.solvers.paper import PAPER_TOLERANCE
 
@@ -52,6 +52,7 @@ class Options:
         check_target(self.target_quantity)
         if self.accuracy is not None:
             check_accuracy(self.accuracy)
+            check_has_bar(self.target_quantity, self.scene.friction)
         require_number("tolerance", self.residual_tolerance, "a number between 0 and 1", above=0, below=1)
         if (self.grid is None) == (self.accuracy is None):
             allowed = "a number of elements along the longer side, or two, or an accuracy, and not both"

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -11,6 +13,7 @@ from refimpl.errors import InputError, NotConverged
 from refimpl.grid import Window
 from refimpl.model.certificate import State, certify
 from refimpl.model.elasticity import Elasticity
+from refimpl.model.forces import Forces
 from refimpl.model.friction import Friction
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
@@ -64,4 +67,30 @@ def solve_reference(problem: Problem) -> State:
     if found.ended != "converged" or 2 * np.count_nonzero(excluded) > np.count_nonzero(found.pressure > 0):
         status = Status.ITERATION_LIMIT
     f, r = found.pressure, found.traction
-    return certify(problem, operator, f, r, slopes, depth, excluded=excluded, status=status)
+    state = certify(problem, operator, f, r, slopes, depth, excluded=excluded, status=status)
+    return _with_own_numbers(problem, state, found)
+
+
+def _with_own_numbers(problem: Problem, state: State, found: SimpleNamespace) -> State:
+    """The state with the reference's own N, F, Q, mu, A and approach; the differences are a residual."""
+    forces = Forces(found.normal, found.friction, found.transverse)
+    terms = float(np.sum(np.abs(found.pressure) + np.abs(found.traction)))
+    scale = terms * problem.grid.element_area or 1.0
+    differences = [abs(own - other) / scale for own, other in zip(forces, state.forces, strict=True)]
+    differences.append(abs(found.area - state.contact_area) / problem.grid.nominal_area)
+    if found.normal and problem.nominal_load(found.normal) == problem.nominal_load(state.forces.normal):
+        size = abs(found.mu) + scale / abs(problem.nominal_load(found.normal))
+        differences.append(abs(found.mu - state.friction_coefficient) / size)
+    approach = found.approach + problem.datum
+    if np.any((found.pressure > 0) & (found.pressure < problem.cap)):  # else an interval of approaches
+        of_element = problem.elasticity.element_compliance(problem.grid) * float(found.p_max)
+        size = max(abs(approach), abs(found.approach), of_element) or 1.0  # from either datum
+        differences.append(abs(approach - state.approach) / size)
+    return replace(
+        state,
+        forces=forces,
+        friction_coefficient=float(found.mu),
+        contact_area=float(found.area),
+        approach=float(approach),
+        certificate=replace(state.certificate, reference=max(differences)),
+    )

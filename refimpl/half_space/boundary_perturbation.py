@@ -20,6 +20,7 @@ Van Dyke 1975, section 2.4); in-plane fields of the half-space: Johnson 1985, se
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,6 +45,7 @@ class Contact:
     pressure, traction : f and r (Pa), r along ``direction`` on the lower body
     slopes : of the common surface
     facets_solved : the solution has the facet's tractions already (``slope_correction``)
+    near : only changes in contact are wanted, to single precision: an empty margin of the contact's size does
     """
 
     grid: Grid
@@ -55,6 +57,12 @@ class Contact:
     slopes: Slopes
     direction: float
     facets_solved: bool = False
+    near: bool = False
+
+    @property
+    def transform_shape(self) -> tuple[int, int]:
+        """Shape of the fields' Fourier transforms: no image of the contact touches what is wanted."""
+        return self.grid.transform_shape_near(self.pressure > 0) if self.near else self.grid.transform_shape
 
 
 def gap_changes(contact: Contact) -> tuple[Array, Array]:
@@ -77,7 +85,8 @@ class _Body:
     def __init__(self, contact: Contact, material: Material, sign: float) -> None:
         self.contact, self.material, self.sign = contact, material, sign
         grid = contact.grid
-        self.shape = grid.transform_shape
+        self.shape = contact.transform_shape
+        self.real = np.float32 if contact.near else np.float64
         dx, dy = grid.spacings
         kx = 2 * np.pi * scipy.fft.fftfreq(self.shape[0], dx)[:, None]
         ky = 2 * np.pi * scipy.fft.rfftfreq(self.shape[1], dy)[None, :]
@@ -86,7 +95,8 @@ class _Body:
         # first derivatives have no sign at the highest wavenumber of an even grid
         kx = np.where(np.abs(kx) < np.pi / dx * (1 - 1e-12), kx, 0.0)
         ky = np.where(np.abs(ky) < np.pi / dy * (1 - 1e-12), ky, 0.0)
-        self.ik = (1j * kx, 1j * ky)
+        self.over_square = self.over_square.astype(self.real)
+        self.ik = tuple(np.multiply(1j, k.astype(self.real)) for k in (kx, ky))
         E, nu = material.E, material.nu
         self.modulus = E
         self.coupling = (1 + nu) * (1 - 2 * nu) / E
@@ -94,7 +104,7 @@ class _Body:
     def recession(self, eta: Array, inward: Array) -> Array:
         """Return the first-order change of the displacement into the body at its surface (m)."""
         f, along, direction = self.contact.pressure, self.contact.traction, self.contact.direction
-        q = self.sign * np.cos(direction) * along, self.sign * np.sin(direction) * along
+        q = self.sign * math.cos(direction) * along, self.sign * math.sin(direction) * along
         eta = self.contact.grid.about_datum(eta, f)
         u, (xx, yy, xy) = self._surface_fields(self._to(f), self._to(along))
         xy_stress = eta * self.modulus / (1 + self.material.nu) * xy
@@ -116,14 +126,14 @@ class _Body:
     def _facets(self, f: Array, along: Array) -> tuple[Array, Vector]:
         """Pressure and shear of the facets' tractions that the solution does not have (Pa)."""
         slopes, direction = self.contact.slopes, self.contact.direction
-        cos, sin = self.sign * np.cos(direction), self.sign * np.sin(direction)
+        cos, sin = self.sign * math.cos(direction), self.sign * math.sin(direction)
         ahead, across = f * slopes.tan_x, f * slopes.tan_y
         return -along * slopes.tan_x, (cos * ahead - sin * across, sin * ahead + cos * across)
 
     def _surface_fields(self, pressed: Complex, sheared: Complex) -> tuple[Vector, Strains]:
         """In-plane displacements (m) and strains xx, yy, xy of a half-space's surface under f and r."""
         E, nu, ik, direction = self.modulus, self.material.nu, self.ik, self.contact.direction
-        towards = self.sign * np.cos(direction), self.sign * np.sin(direction)
+        towards = self.sign * math.cos(direction), self.sign * math.sin(direction)
         over_k = np.sqrt(self.over_square)
         divergence = (towards[0] * ik[0] + towards[1] * ik[1]) * sheared
         along_k = self.over_square * (self.coupling * pressed + 2 * (1 + nu) / E * nu * over_k * divergence)
@@ -149,7 +159,7 @@ class _Body:
         return self._back(self.ik[0] * self._to(along_x) + self.ik[1] * self._to(along_y))
 
     def _to(self, values: Array) -> Complex:
-        found: Complex = scipy.fft.rfft2(values, self.shape)
+        found: Complex = scipy.fft.rfft2(values.astype(self.real, copy=False), self.shape)
         return found
 
     def _back(self, transform: Complex) -> Array:

@@ -10,7 +10,7 @@ being the elastic energy, for a flat punch's pressure has the least energy; cont
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -98,7 +98,7 @@ def model_form(
     contact = pressure > 0
     if not contact.any():
         return ModelForm(0.0, 0.0)
-    lower, upper = gap_changes(contact_of(problem, pressure, traction, displacements))
+    lower, upper = gap_changes(replace(contact_of(problem, pressure, traction, displacements), near=True))
     shares = pressure / pressure.sum()
     grown = contact / np.maximum(pressure, _LEAST * pressure.max())
     sunk = abs(float(np.sum(grown * (lower + upper)) / np.sum(grown)))

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD
+from refimpl.accuracy.discretisation_error import EXCESS_SPREAD
 from refimpl.driver.solve import solve
 from refimpl.errors import NotConverged
 from refimpl.grid import Array
@@ -136,7 +136,7 @@ def _response(
     inputs, solves = _inputs(scene, solution, tolerances)
     by_tau, by_beta = friction_slopes(scene, solution)
     excess = solution.details.features.excess
-    factor = COVERAGE * EDGE_SIZE_SPREAD / EDGE_SIZE * abs(excess)
+    factor = COVERAGE * EXCESS_SPREAD * abs(excess)
     slopes = (by_tau, by_beta, *(_log_slope(scene, solution, name) for name in further))
     name = "friction_coefficient_corrected"
     edge = solution.uncertainty[name].get("active set") or 0.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from refimpl.grid import Array
+from refimpl.grid import Array, Mask
 from refimpl.measured.missing_points import fill
 from refimpl.measured.preparation import (
     MAD_TO_RMS,
@@ -21,7 +21,11 @@ _ROUNDING = 1e-9  # share of the rms height
 
 def standing_out(z: Array, pixel: tuple[float, float]) -> tuple[str, ...]:
     """Return a note on the points, and one on the lines along each axis, that stand out; empty for none."""
-    points, notes = spikes(z, pixel), []
+    known = np.isfinite(z)
+    if not known.any():
+        return ()
+    z = z if known.all() else fill(z, pixel)
+    points, notes = spikes(z, known), []
     if points:
         notes.append(
             f"{points} points stand out by more than {FAR:g} local spreads: outliers = {FAR:g} (--outliers "
@@ -36,12 +40,14 @@ def standing_out(z: Array, pixel: tuple[float, float]) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def spikes(z: Array, pixel: tuple[float, float]) -> int:
-    """Return the number of points farther from their neighbours than `FAR` spreads, as `prepare` has them."""
-    known = np.isfinite(z)
-    if min(z.shape) < NEIGHBOURHOOD or not known.any():
+def spikes(z: Array, known: Mask) -> int:
+    """Return the number of points farther from their neighbours than `FAR` spreads, as `prepare` has them.
+
+    ``known`` : points that the file has; the others are filled
+    """
+    if min(z.shape) < NEIGHBOURHOOD:
         return 0
-    away = off_neighbours(fill(z, pixel) if not known.all() else z, False)
+    away = off_neighbours(z, False)
     typical = max(MAD_TO_RMS * float(np.median(away[known])), _ROUNDING * float(z[known].std()))
     i, j = np.nonzero(known & (away > FAR * typical))
     reach = NEIGHBOURHOOD // 2
@@ -58,10 +64,9 @@ def scars(z: Array) -> int:
     """
     if len(z) < _LEAST_LINES:
         return 0
-    with np.errstate(invalid="ignore"):
-        steps = np.nanmedian(np.diff(z, axis=0), axis=1)
-    steps = np.nan_to_num(steps - np.nanmedian(steps))
-    spread = max(MAD_TO_RMS * float(np.median(np.abs(steps))), _ROUNDING * float(np.nanstd(z)))
+    steps = np.median(np.diff(z, axis=0), axis=1)
+    steps = steps - np.median(steps)
+    spread = max(MAD_TO_RMS * float(np.median(np.abs(steps))), _ROUNDING * float(z.std()))
     up, down = steps[:-1], -steps[1:]
     out = (up * down > 0) & (np.minimum(np.abs(up), np.abs(down)) > FAR * spread)
     return int(np.count_nonzero(out))

@@ -39,6 +39,12 @@ def resultants(pressure: Array, traction: Array, slopes: Slopes, element_area: f
     )
 
 
+def normal_terms(pressure: Array, traction: Array, slopes: Slopes, element_area: float) -> float:
+    """Return the sum of the sizes of the terms of Eq. (2) (N), whose difference is N."""
+    sizes = np.abs(pressure) * slopes.cos_x + np.abs(traction * slopes.sin_x)
+    return float(np.sum(sizes * slopes.cos_y)) * element_area
+
+
 def facet_resultants(pressure: Array, traction: Array, slopes: Slopes, element_area: float) -> Forces:
     """Sum the exact tractions of a facet per projected area over the contact.
 

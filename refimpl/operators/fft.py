@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.grid import Array, Grid, Window
+from refimpl.grid import Array, Grid, Shape, Window
 from refimpl.grid.window import padded_length
 from refimpl.operators.kernel_tables import signed_table, unit_table
 from refimpl.operators.symmetric import even_hat, odd_hat
@@ -56,13 +56,14 @@ class FFTInfluence:
         source: Window | None = None,
         target: Window | None = None,
         counter: Counter | None = None,
+        padded: tuple[int, int] | None = None,
     ) -> None:
         self.grid = grid
         self.direction = direction
         self.source = source or grid.window
         self.target = target or self.source
         self.counter = counter if counter is not None else Counter()
-        self._padded = _padded(self.source, self.target)
+        self._padded = padded or _padded(self.source, self.target)
         self._points = math.prod(self._padded)
         shifts = self.target.i0 - self.source.i0, self.target.j0 - self.source.j0
         placed = map(_places, self._padded, shifts, self.source.shape, self.target.shape)
@@ -114,11 +115,22 @@ class FFTInfluence:
         rows = _circle(self._padded[0], target.i0 - source.i1 + 1, target.i1 - 1 - source.i0)
         return rows, _circle(self._padded[1], target.j0 - source.j1 + 1, target.j1 - 1 - source.j0)
 
+    @property
+    def _is_even(self) -> bool:
+        """Whether the circles hold the opposite of every offset, but for that opposite 0."""
+        return all(map(_is_even, self._offsets))
+
+    @property
+    def _is_odd(self) -> bool:
+        """Whether offsets opposite 0 do not count besides."""
+        (N, K), (rows, columns) = self._padded, _farthest(self.source, self.target)
+        return self._is_even and rows < N // 2 and columns < K // 2
+
     @cached_property
     def _normal_hat(self) -> Array | Complex:
         """The kernel's transform: of a quarter of it, and real, where the circles are even."""
         points = self._points
-        if not all(map(_is_even, self._offsets)):
+        if not self._is_even:
             self.counter.add("normal kernel", points // 2)
             return self._transformed(self._signed("normal"))
         self.counter.add("normal kernel", points // 8)
@@ -130,8 +142,11 @@ class FFTInfluence:
         Rows are offsets along that axis.
         """
         halves = [n // 2 + 1 for n in self._padded]
-        table = unit_table(kind, (halves[axis], halves[1 - axis]), self._aspect(axis))
+        table = self._unit_quarter(kind, (halves[axis], halves[1 - axis]), self._aspect(axis))
         return table * self.grid.spacings[axis]
+
+    def _unit_quarter(self, kind: str, shape: Shape, aspect: float) -> Array:
+        return unit_table(kind, shape, aspect)
 
     @cached_property
     def _shear_hat(self) -> Complex:
@@ -143,10 +158,9 @@ class FFTInfluence:
 
     def _tangential_hat(self, angle: float) -> Complex:
         """The kernel's transform: of quarters of its parts along x and y, unless offsets opposite 0 count."""
-        points, (N, K) = self._points, self._padded
+        points = self._points
         cos, sin = math.cos(angle), math.sin(angle)
-        rows, columns = _farthest(self.source, self.target)
-        if all(map(_is_even, self._offsets)) and rows < N // 2 and columns < K // 2:
+        if self._is_odd:
             self.counter.add("shear kernel", points // 8 * (2 if sin else 1))
             along_x = cos * self._quarter("tangential")
             along_y = sin * self._quarter("tangential", axis=1).T if sin else None

@@ -4,18 +4,28 @@ from __future__ import annotations
 
 from refimpl.grid import Grid, Window
 from refimpl.operators.fft import Counter, FFTInfluence, WholeGridInfluence
+from refimpl.operators.near_far import NearFarInfluence, is_quicker
 from refimpl.operators.periodic import PeriodicInfluence
 
 WindowInfluence = FFTInfluence | PeriodicInfluence
 
 
 def window_influence(
-    grid: Grid, direction: float, window: Window | None = None, counter: Counter | None = None
+    grid: Grid,
+    direction: float,
+    window: Window | None = None,
+    counter: Counter | None = None,
+    tolerance: float = 0.0,
 ) -> WindowInfluence:
-    """Return the operator of a window of the grid onto itself; a periodic grid is its own window."""
+    """Return the operator of a window of the grid onto itself; a periodic grid is its own window.
+
+    Where a tolerance leaves room for products to 1e-11 of the largest displacement, they are the quickest.
+    """
     if grid.periodic:
         return PeriodicInfluence(grid, direction, counter=counter)
-    return FFTInfluence(grid, direction, source=window, counter=counter)
+    window = window or grid.window
+    kind = NearFarInfluence if is_quicker(grid, window, tolerance) else FFTInfluence
+    return kind(grid, direction, source=window, counter=counter)
 
 
 def whole_grid_influence(

@@ -8,7 +8,6 @@ from functools import cached_property
 from refimpl.accuracy.first_contact import HERTZ_EXPONENTS
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.iteration_error import (
-    AREAS,
     Uncertainty,
     active_set_parts,
     iteration_parts,
@@ -108,7 +107,7 @@ class Evidence:
                 self.neglected,
                 float(state.traction.sum()) / total if total else 0.0,
                 problem.nominal_load(forces.normal),
-                dict.fromkeys(AREAS, state.contact_area)
+                {"contact_area": state.contact_area}
                 | {"plastic_area": state.plastic_area}
                 | {"max_pressure": 0.0 if state.plastic_area else state.max_pressure}
                 | moved,

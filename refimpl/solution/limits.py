@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from refimpl.accuracy.iteration_error import without_rule
 from refimpl.grid import Grid
 from refimpl.grid.contact_patches import patch_sizes
 from refimpl.half_space.influence_error import SlopeError, constant_along_an_axis, slope_error
@@ -17,6 +18,7 @@ from refimpl.model.slopes import Slopes
 from refimpl.planning.terms import LABELS
 from refimpl.scene.resolution import resolution
 from refimpl.scene.scene import Body, Scene
+from refimpl.solution.cause_of_failure import cause_of_failure
 from refimpl.solution.evidence import Evidence
 from refimpl.surfaces import Flat, Sphere
 from refimpl.surfaces.statistics import rms_slopes
@@ -86,10 +88,16 @@ def plain_warning(text: str) -> dict[str, Any]:
 
 
 def model_warnings(evidence: Evidence) -> tuple[ModelWarning | Notice, ...]:
-    """Return a warning for every limit that a solution exceeds, and notes on yield; none without contact."""
+    """Return a warning for every limit that a solution exceeds, and notes on yield; none without contact.
+
+    The first names why a solve did not converge, if that is known.
+    """
+    cause = cause_of_failure(evidence)
+    first = () if cause is None else (Notice(cause),)
     if not evidence.state.contact.any():
-        return ()
+        return first
     found = (
+        *first,
         _plasticity(evidence),
         _hardness(evidence),
         _shear(evidence),
@@ -102,13 +110,14 @@ def model_warnings(evidence: Evidence) -> tuple[ModelWarning | Notice, ...]:
         _active_set(evidence),
         *_neglected(evidence),
         *_plastic_notes(evidence),
+        _law(evidence),
         _adhesion(evidence),
     )
     return tuple(warning for warning in found if warning is not None)
 
 
 def _plastic_notes(evidence: Evidence) -> list[Notice]:
-    """What is not known of yield, or left out of it."""
+    """Return notes on a missing hardness and on effects of yield that are not modelled."""
     pair, state = evidence.problem.pair, evidence.state
     area = state.contact_area
     if pair.softer_hardness is None:
@@ -118,9 +127,7 @@ def _plastic_notes(evidence: Evidence) -> list[Notice]:
             f"{state.max_pressure / 1e6:.4g} MPa; plasticity not checked"
         )
         return [Notice(text)]
-    bodies = (("lower", pair.lower), ("upper", pair.upper))
-    unlimited = [name for name, material in bodies if material.hardness is None]
-    notes = [Notice(f"the {name} body has no hardness: taken as unlimited") for name in unlimited]
+    notes = []
     if state.plastic_area:
         text = (
             f"{state.plastic_area / area:.1%} of the contact area is at the hardness (first loading): "
@@ -129,7 +136,9 @@ def _plastic_notes(evidence: Evidence) -> list[Notice]:
         notes.append(Notice(text))
     if state.plastic_area == area and evidence.problem.load is not None:
         notes.append(Notice("all contact is plastic: the approach is not unique"))
-    return notes
+    bodies = (("lower", pair.lower), ("upper", pair.upper))
+    unlimited = [name for name, material in bodies if material.hardness is None]
+    return notes + [Notice(f"the {name} body has no hardness: taken as unlimited") for name in unlimited]
 
 
 def roughness_slope(scene: Scene, grid: Grid) -> float:
@@ -171,8 +180,10 @@ def _hardness(evidence: Evidence) -> ModelWarning | None:
 
 
 def _shear(evidence: Evidence) -> ModelWarning | None:
-    """The softer body's shear strength is ``H / (3 sqrt 3)``: H is three times the yield stress (Tabor
-    1951), which von Mises' shear strength is a sqrt 3rd of."""
+    """Warn of friction above the softer body's shear strength, ``H / (3 sqrt 3)``.
+
+    H is three times the yield stress (Tabor 1951); von Mises' shear strength is that stress over sqrt 3.
+    """
     problem, state = evidence.problem, evidence.state
     hardness = problem.pair.softer_hardness
     if hardness is None:
@@ -190,6 +201,12 @@ def _shear(evidence: Evidence) -> ModelWarning | None:
     return ModelWarning(Limit.SHEAR, largest, strength, text)
 
 
+def _law(evidence: Evidence) -> Notice | None:
+    law = evidence.problem.friction
+    text = f"{type(law).__name__} is not r = tau + beta f: no rule gives error bars of mu and F"
+    return Notice(text) if without_rule(law) else None
+
+
 def _adhesion(evidence: Evidence) -> Notice | None:
     """The work of adhesion whose pull-off force of a smooth ball, ``1.5 pi w R`` (JKR), is the load."""
     scene, load = evidence.scene, evidence.problem.load
@@ -204,7 +221,7 @@ def _adhesion(evidence: Evidence) -> Notice | None:
 
 
 def _area_missing(evidence: Evidence, hardness: float) -> str:
-    """By how much an elastic area is smaller than P / H, which is the least at the hardness."""
+    """Return the text on an elastic area below P / H, the least area at the hardness."""
     least = evidence.state.forces.normal / hardness / evidence.state.contact_area - 1
     return f" (at the hardness A is at least P/H, {least:.1%} more)" if least > 0 else ""
 
@@ -288,7 +305,8 @@ def _correlation(evidence: Evidence) -> ModelWarning | None:
     missed = f"; the grid misses {detail.missed}" if detail.missed else ""
     text = (
         f"{found.elements:.2g} elements per {detail.name}, {detail.length:.3g} m: "
-        f"slopes of the roughness are not resolved below {detail.resolved:.0f}{missed}"
+        f"slopes of the roughness are not resolved below {detail.resolved:.0f}{missed}; A, and mu by the "
+        "share of tau, come out too large"
     )
     return ModelWarning(Limit(detail.name), found.elements, detail.resolved, text)
 

@@ -13,8 +13,10 @@ from functools import cached_property
 from typing import overload
 
 from refimpl.accuracy import refinement
-from refimpl.errors import require_one_of
+from refimpl.accuracy.iteration_error import without_rule
+from refimpl.errors import InputError, require_one_of
 from refimpl.grid import Array
+from refimpl.model.friction import FrictionLaw
 from refimpl.solution.details import Details
 
 Source = Callable[["Numbers"], float]
@@ -73,6 +75,12 @@ def _mean(pressure: Array) -> float:
     return float(touching.mean()) if touching.size else 0.0
 
 
+def _elastic_friction(details: Details) -> float:
+    """The part of Eq. (3) that is not local friction: ``sum f sin(theta_x) cos(theta_y) dA``."""
+    slopes = details.state.slopes
+    return float((details.state.pressure * slopes.sin_x * slopes.cos_y).sum()) * details.grid.element_area
+
+
 @dataclass
 class Quantity:
     """A number of a `Solution`, which reads it as an attribute of its name.
@@ -123,7 +131,8 @@ class Numbers:
     friction_coefficient = Quantity("mu, summed over elements", "mu", "1", target=True)
     contact_area = Quantity("contact area A", "A", "m^2", tables=_EVERYWHERE, target=True)
     contact_area_corrected = Quantity(
-        "A, perimeter-corrected", "A", "m^2", tables=("command",), target=True
+        "A, perimeter-corrected", "A", "m^2", tables=("command",), target=True,
+        source=lambda s: s.details.features.numbers["contact_area_corrected"],
     )  # fmt: skip
     contact_area_share = Quantity(
         "A/A0", "A/A0", "1", tables=("prompt", "picture"), rule=_area_share_error,
@@ -151,6 +160,9 @@ class Numbers:
     )  # fmt: skip
     friction_force = Quantity("F, summed over elements", "F", "N", tables=())
     binormal_force = Quantity("transverse force Q", "Q", "N")
+    elastic_friction = Quantity(
+        "F by slopes", "F_s", "N", tables=(), rule=None, source=lambda s: _elastic_friction(s.details)
+    )  # fmt: skip
 
     @cached_property
     def uncertainty(self) -> Mapping[str, Mapping[str, float | None]]:
@@ -159,7 +171,11 @@ class Numbers:
         Empty without contact. A part that nothing bounds is infinite; one for which there is no rule, None.
         """
         features = self.details.features
-        return refinement.uncertainty(self.details.grids or [features]) if features.touching else {}
+        if not features.touching:
+            return {}
+        parts = refinement.uncertainty(self.details.grids or [features])
+        unknown = without_rule(self.details.problem.friction)
+        return {**parts, **{name: {"discretisation": None} for name in unknown if name in parts}}
 
     def error(self, name: str) -> float | None:
         """Return the error bar of a number, in its unit; inf where unbounded, None where no rule gives one.
@@ -180,6 +196,14 @@ TARGETS = tuple(name for name, quantity in QUANTITIES.items() if quantity.target
 def check_target(name: str) -> None:
     """Raise `InputError` unless ``accuracy=`` may be about the number."""
     require_one_of("quantity", name, TARGETS)
+
+
+def check_has_bar(name: str, law: FrictionLaw) -> None:
+    """Raise `InputError` for a number that has no error bar with this law."""
+    if name in without_rule(law):
+        bounded = " or ".join(target for target in TARGETS if target not in without_rule(law))
+        allowed = f"{bounded}, or a grid: no rule gives error bars of friction by {type(law).__name__}"
+        raise InputError("quantity", name, allowed)
 
 
 def error_bound(solution: Numbers, name: str) -> float:

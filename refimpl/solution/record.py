@@ -50,9 +50,10 @@ class Record(_Fields):
 
     @cached_property
     def warnings(self) -> tuple[ModelWarning | Notice, ...]:
-        """Notes of inputs and surfaces, warnings of the model's limits, and why an accuracy was missed."""
+        """Warnings of the model's limits; then notes: why an accuracy was missed, on yield, on the input."""
         evidence, shortfall = self.details.evidence, self.details.shortfall
-        return (*notes(evidence), *model_warnings(evidence), *((shortfall,) if shortfall else ()))
+        found = (*((shortfall,) if shortfall else ()), *model_warnings(evidence), *notes(evidence))
+        return tuple(sorted(found, key=lambda text: text.limit == Notice.limit))
 
     @cached_property
     def surfaces(self) -> tuple[Array, Array]:

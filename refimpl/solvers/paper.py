@@ -16,6 +16,7 @@ excluded too early are taken back when they break inequality (6b). The approach 
 from __future__ import annotations
 
 import math
+from copy import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -156,6 +157,14 @@ class _Scheme:
     def contact(self) -> Mask:
         """Elements with positive pressure."""
         return self.pressure > 0
+
+    def copy(self) -> _Scheme:
+        """Return the scheme as it is: arrays are replaced, never changed."""
+        return copy(self)
+
+    def restore(self, copied: _Scheme) -> None:
+        """Go back to a copy; the trace goes on."""
+        vars(self).update(vars(copied))
 
     def solve(self, tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
         """Balance with tau on an active set."""

@@ -110,9 +110,14 @@ class SelfAffineRoughness(Surface):
         """Stretch along the lay and across it."""
         return Lay(self.anisotropy, 1.0, self.lay)
 
-    def moment(self, order: int) -> float:
-        """Return ``(2 pi)^-2 int q^n C d^2q`` of the isotropic PSD with C = 1 (m^2) on its plateau."""
-        low, roll, high = (2.0 * math.pi / wave for wave in (self.long_cut, self.roll_off, self.short_cut))
+    def moment(self, order: int, shortest: float | None = None) -> float:
+        """Return ``(2 pi)^-2 int q^n C d^2q`` of the isotropic PSD with C = 1 (m^2) on its plateau.
+
+        Only waves of at least the ``shortest`` length count, where one is given (m).
+        """
+        short = min(self.short_cut if shortest is None else shortest, self.long_cut)
+        low, high = 2.0 * math.pi / self.long_cut, 2.0 * math.pi / short
+        roll = min(2.0 * math.pi / self.roll_off, high)
         n, exponent = order + 2, order - 2.0 * self.hurst
         octaves = math.log(high / roll)
         tail = math.expm1(exponent * octaves) / exponent if exponent else octaves
@@ -135,7 +140,7 @@ class SelfAffineRoughness(Surface):
         return 1.5 * self.moment(0) * self.moment(4) / self.moment(2) ** 2
 
     def psd(self, q: Array) -> Array:
-        """PSD C (m^4) at wave numbers across the lay (rad/m)."""
+        """Return the PSD C (m^4) at wave numbers across the lay (rad/m)."""
         plateau = self.rms**2 * self.anisotropy / self.moment(0)
         return np.asarray(plateau * self._shape(np.asarray(q, dtype=float)))
 
@@ -230,7 +235,10 @@ class SelfAffineRoughness(Surface):
         slope, curvature = self.missed(spacing)
         said = f"{slope:.0%} of the rms slope and {curvature:.0%} of the rms curvature"
         curvature = self.short_cut * math.sqrt(self.moment(4) / self.moment(2))
-        return Detail("shortest wave", self.short_cut, RESOLVED, curvature, said)
+        unresolved = 1.0 - self.moment(2, max(self.short_cut, 2.0 * spacing)) / self.moment(2)
+        return Detail(
+            "shortest wave", self.short_cut, RESOLVED, curvature, self.rms_gradient, unresolved, said
+        )
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
         lay = f", stretched {self.anisotropy:.4g} times along a lay of {math.degrees(self.lay):.4g} degrees"

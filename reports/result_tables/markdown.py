@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from reports.exhibit import Column, table
-from reports.result_files import SUFFIX
 from reports.results import Case
+from verification.output.result_files import SUFFIX
 
 RUN = "quick"
 """The run that the report is made of; the other files are beside it."""

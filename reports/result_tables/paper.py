@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from reports.agreement import column_of
 from reports.claims import VERDICTS, Judged, judged
 from reports.evidence import Evidence
 from reports.exhibit import Column
@@ -20,18 +21,19 @@ def table_3(reproduction: Mapping[str, Any]) -> str:
     first = data[0]
     rows: list[Row] = []
     for k, roughness in enumerate(first["sigma_e (um)"]):
-        cells: list[object] = [f"{roughness:.3f}", f"{first['mesh'][k]}²", first["realisations"][k]]
+        cells: list[object] = [column_of(roughness), f"{first['mesh'][k]}²", first["realisations"][k]]
         for found, scale in zip(data, (1.0, 1e6, 1e-9), strict=True):
             computed, half_width = scale * found["ours"][k], scale * found["half width 95 %"][k]
             cells += [f"{scale * found['printed'][k]:.4g}", interval(computed, half_width)]
         rows.append([*cells, link("reproduction")])
     head = (
-        "σ_e (µm)", "grid", "surfaces", "μ printed", "μ computed", "A printed (mm²)", "A computed (mm²)",
+        "half-space", "grid", "surfaces", "μ printed", "μ computed", "A printed (mm²)", "A computed (mm²)",
         "p_max printed (GPa)", "p_max computed (GPa)", "file",
     )  # fmt: skip
     text = (
         "Table 1's ball on a flat under 70 N, as printed in the paper and as computed here: means over "
-        "random surfaces. The interval is of the mean."
+        "random surfaces. Columns are named by the half-space's rms roughness, as in the paper. The "
+        "interval is of the mean."
     )
     return section("Table 3 of the paper", text, head, rows)
 
@@ -75,7 +77,8 @@ CLAIMS: dict[str, Column] = {
 def claims(evidence: Evidence) -> str:
     """List the paper's claims that do not hold or hold with conditions, and errata."""
     found = judged(evidence.cases, evidence.errata)
-    shown = [item for verdict in VERDICTS[:5] for item in found if item.verdict == verdict and item.cases]
+    listed = VERDICTS[: VERDICTS.index("confirmed")]
+    shown = [item for verdict in listed for item in found if item.verdict == verdict and item.cases]
     return "\n\n".join([listing("Claims of the paper", _counted(found), shown, CLAIMS), errata(evidence)])
 
 

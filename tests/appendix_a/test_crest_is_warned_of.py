@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 import refimpl as rf
-from reports.result_files import committed
 from verification.cases.appendix_a.model_form import METAL
 from verification.cases.appendix_a.model_form_study import CREST, LOADS, SLOPES, pair_of, scene_of
+from verification.output.result_files import committed
 
 SHARE = LOADS[1]
 

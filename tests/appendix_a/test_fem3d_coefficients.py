@@ -20,7 +20,7 @@ from appendix_a.fem3d.patch import boussinesq, cerruti, normal_coefficient
 from appendix_a.fem3d.space import space
 from appendix_a.fem3d.surface import X, Y, flat_sample, outer_displacements, sample, solved
 from appendix_a.fem3d.wavy import Kind, Waviness
-from reports.result_files import committed
+from verification.output.result_files import committed
 
 NU = 0.3
 

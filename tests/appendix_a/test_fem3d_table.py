@@ -30,7 +30,7 @@ from appendix_a.fem3d.study import Point, row
 from appendix_a.fem3d.surface import Sample, X, Y
 from appendix_a.fem3d.table import Series, Table3D, condensed, main
 from appendix_a.fem3d.wavy import Kind, Waviness
-from reports.result_files import committed
+from verification.output.result_files import committed
 
 EXACT = normal_coefficient(X, Y, 0.2)
 ODD = 0.01 * np.arange(10.0)

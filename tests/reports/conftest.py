@@ -8,8 +8,8 @@ import pytest
 from filelock import FileLock
 
 from reports.generator import render
-from reports.result_files import read_results
 from tests.documents import ROOT
+from verification.output.result_files import read_results
 
 
 @pytest.fixture(scope="session")

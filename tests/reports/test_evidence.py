@@ -7,15 +7,15 @@ from fnmatch import fnmatchcase
 import pytest
 
 from reports.agreement import SINGLE, TABLE3
-from reports.claims import NOT_ESTABLISHED, VERDICTS, judged, paper, parts
+from reports.claims import NOT_ESTABLISHED, VERDICTS, judged, of_the_conversion, paper, parts
 from reports.evidence import gathered, groups
 from reports.findings import fields
-from reports.result_files import read_results
 from reports.results import ResultFileError, check, worst
 from reports.revisions import revisions_of
 from tests.documents import ROOT
 from tests.reports.sample import ERRATUM, case, results
 from verification.framework.registry import load
+from verification.output.result_files import read_results
 
 
 def dated(date: str, *cases: dict, **other: object) -> dict:
@@ -95,11 +95,14 @@ def test_every_row_of_the_committed_results_has_a_verdict_and_a_finding() -> Non
         assert row.claim.verdict == NOT_ESTABLISHED or row.verdict != NOT_ESTABLISHED, row.claim.label
         assert "n/a" not in row.finding, row.claim.label
         assert row.finding, row.claim.label
+        assert row.verdict != "confirmed with conditions" or row.claim.condition, row.claim.label
 
 
 def test_the_matrix_has_known_verdicts_and_parts_and_one_row_a_label() -> None:
     claims = paper()
-    assert {claim.verdict for claim in claims if claim.evidence} <= {"", *VERDICTS[1:]}
+    assert {claim.verdict for claim in claims if claim.evidence} <= {"", *VERDICTS}
+    printed = {place for c in claims if c.verdict == "print or conversion" for place in c.corrected}
+    assert printed == of_the_conversion()
     known = {row[1] for row in SINGLE} | {row[1] for row in TABLE3}
     assert {quantity for claim in claims for quantity in claim.numbers} <= known
     assert {claim.part for claim in claims} <= {part.name for part in parts()} | {""}

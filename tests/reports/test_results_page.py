@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from reports.result_files import read_results
 from reports.result_tables.paper import table_3
 from reports.results_page import FOLDER, PAGE, page
 from tests.documents import ROOT
+from verification.output.result_files import read_results
 
 
 @pytest.fixture(scope="module")

@@ -8,15 +8,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from reports.result_files import read_result
 from verification.benchmarks import page, rounds
 from verification.benchmarks.codes import codes
 from verification.benchmarks.problems import FLATS
 from verification.benchmarks.summary import lines, ratios, row
 from verification.framework.case import jsonable
-from verification.framework.files import Progress, write_result
-from verification.framework.provenance import provenance
-from verification.framework.text_table import columns
+from verification.output.files import Progress
+from verification.output.provenance import provenance
+from verification.output.result_files import read_result, write_result
+from verification.output.text_table import columns
 
 CLOCK = (
     "from heights to pressures, kernels and plans included; a solve at 64 x 64 comes first. "

@@ -23,7 +23,7 @@ from refimpl.solvers.production.nested_solver import solve_fft
 from verification.adapters import aspher, contactmechanics, tamaas
 from verification.adapters.published_code import PublishedCode
 from verification.benchmarks.problems import FRICTION, problem, scene
-from verification.framework.provenance import DISTRIBUTION, versions
+from verification.output.provenance import DISTRIBUTION, versions
 
 OWN = "refimpl"
 ALONE = f"{OWN}-solver"

@@ -15,7 +15,7 @@ from refimpl.grid import Array
 from verification.benchmarks.codes import OWN, SETTINGS, SLOPED, alone, own
 from verification.benchmarks.problems import FLATS
 from verification.benchmarks.rounds import CERTIFIED
-from verification.framework.text_table import columns
+from verification.output.text_table import columns
 
 
 def turns(name: str, kind: str, M: int, count: int) -> tuple[Array, float]:

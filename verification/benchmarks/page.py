@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from verification.benchmarks.codes import ALONE, OWN, SHEARED, SLOPED
-from verification.benchmarks.summary import AGAIN
 
 GRIDS = (128, 256, 512, 1024, 2048)
 PEER, QUICKEST = "aspher", "aspher+options"
@@ -23,18 +22,18 @@ Spread = Mapping[str, float]
 Number = Callable[[Ratios, Rows], Spread | None]
 
 
-def over(code: str, clock: str = "seconds", by: str = OWN) -> Number:
-    """A code's ratio to this code or to its solver alone, within rounds or, in older records, of medians."""
+def over(code: str, by: str = OWN) -> Number:
+    """Return a code's ratio to this code, or to its solver alone, in seconds.
+
+    It is a range of rounds or, in older records, a ratio of medians.
+    """
 
     def number(ratios: Ratios, rows: Rows) -> Spread | None:
         if by == OWN:
-            return dict(ratios[code][clock])
+            return dict(ratios[code]["seconds"])
         if by in ratios[code]:
-            known: dict[str, Spread] = ratios[code][by]
-            return known.get(clock)
-        if not (clock in rows[code] and clock in rows[by]):
-            return None
-        return {"median": rows[code][clock]["median"] / rows[by][clock]["median"]}
+            return dict(ratios[code][by]["seconds"])
+        return {"median": rows[code]["seconds"]["median"] / rows[by]["seconds"]["median"]}
 
     return number
 
@@ -46,14 +45,9 @@ def memory(ratios: Ratios, rows: Rows) -> Spread | None:
 
 
 TABLE: dict[str, Number] = {
-    "ASPHER 0.1.3 over our solver, both from a gap to a pressure": over(PEER, by=ALONE),
-    "the same in a process that has solved it before": over(PEER, AGAIN, by=ALONE),
     "ASPHER with its quickest options over our solver": over(QUICKEST, by=ALONE),
     "ASPHER over this code, from a scene to numbers with error bars": over(PEER),
-    "the same with ASPHER's quickest options": over(QUICKEST),
-    "the same in processor time": over(PEER, "processor seconds"),
     "memory of a solve, ASPHER's over this code's": memory,
-    "our convolutions in all": lambda ratios, rows: {"median": rows[OWN]["convolution equivalents"]},
     "this code with friction over without": over(SHEARED),
     "this code with friction and slopes over without": over(SLOPED),
 }

@@ -14,7 +14,7 @@ from typing import Any
 from verification.cli import appendix_tables, half_space
 from verification.cli.options import Options, Parsers, declare, number, numbers, option, subcommand
 from verification.cli.output import check_workers, emit, refusal
-from verification.framework.text_table import columns
+from verification.output.text_table import columns
 
 # A table is of a slope's square, so none of zero; half a period of positions is all, the rest is its mirror.
 MAP_RANGES = {
@@ -202,7 +202,7 @@ def _refuse_angles(options: argparse.Namespace) -> None:
 
 @contextmanager
 def _progress(total: int, text: str) -> Iterator[Callable[..., None]]:
-    from verification.framework.files import Progress
+    from verification.output.files import Progress
 
     progress = Progress(total)
     try:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from verification.cli.options import Options, number, option
 from verification.cli.output import emit, refusal
-from verification.framework.text_table import columns
+from verification.output.text_table import columns
 
 if TYPE_CHECKING:
     from appendix_a.fem.coefficient_map import CoefficientMap

@@ -36,7 +36,7 @@ def write_npz(solution: Solution, path: Path) -> None:
 
     from refimpl.solution.arrays import attributes_of, fields_of
     from verification.cli.output import plain
-    from verification.framework.files import replacing, to_json
+    from verification.output.files import replacing, to_json
 
     fields = fields_of(solution)
     units = {name: field.unit for name, field in fields.items()}
@@ -53,7 +53,7 @@ def write_netcdf(solution: Solution, path: Path) -> None:
     from tempfile import TemporaryDirectory
 
     from refimpl.solution.arrays import as_dataset
-    from verification.framework.files import replacing
+    from verification.output.files import replacing
 
     # a folder of its own: HDF5 locks the file that it writes, and `replacing` holds a lock on its own
     with TemporaryDirectory() as folder:
@@ -68,7 +68,7 @@ def write_patches(solution: Solution, path: Path) -> None:
     from dataclasses import astuple, fields
 
     from refimpl.solution.patches import Patch
-    from verification.framework.files import write_text
+    from verification.output.files import write_text
 
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
@@ -88,7 +88,7 @@ def write_vtk(solution: Solution, path: Path) -> None:
     import meshio
     import numpy as np
 
-    from verification.framework.files import replacing
+    from verification.output.files import replacing
 
     x, y = np.meshgrid(solution.grid.x, solution.grid.y, indexing="ij")
     sheets = [np.column_stack([x.ravel(), y.ravel(), z.ravel()])
@@ -112,6 +112,6 @@ WRITERS = {"vtk": write_vtk, "npz": write_npz, "netcdf": write_netcdf, "patches"
 
 
 def _provenance() -> dict[str, str]:
-    from verification.framework.provenance import provenance
+    from verification.output.provenance import provenance
 
     return {f"provenance_{name}": str(value) for name, value in provenance().items()}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from verification.cli.output import emit, refusal, select_or_refuse
-from verification.framework.text_table import columns
+from verification.output.text_table import columns
 
 
 def run(options: argparse.Namespace) -> int:
@@ -13,8 +13,8 @@ def run(options: argparse.Namespace) -> int:
 
     Those of a kind that no proof covers are named too, and are no failure.
     """
-    from verification.framework.files import Progress
     from verification.framework.threads import limited_to_one_thread
+    from verification.output.files import Progress
     from verification.solver_suite import suite
     from verification.solver_suite.reference.certified import NoBound, NotCertified, certified
     from verification.solver_suite.reference.files import Export

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from verification.cli.grids import DEFAULT_TEXT, default_grid, own_points
 from verification.cli.options import Options, option, output_file
 from verification.cli.output import PICTURES, check_outputs, check_suffix, emit, files_of, refusal
-from verification.framework.text_table import columns, wrapped
+from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from refimpl import Scene

@@ -17,7 +17,7 @@ from verification.cli.options import (
     output_file,
 )
 from verification.cli.output import PICTURES, StatusLine, check_outputs, check_suffix, emit, files_of
-from verification.framework.text_table import columns, wrapped
+from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from refimpl.identification import Identification, Interval
@@ -52,7 +52,7 @@ def run(options: argparse.Namespace) -> int:
     from refimpl.identification import identify, read_rows
     from refimpl.scene.scene_file import read_scene, read_tolerances
     from verification.cli.identify_store import SolveStore, key
-    from verification.framework.provenance import provenance
+    from verification.output.provenance import provenance
 
     check_suffix("--plot", options.plot, PICTURES)
     scene, tolerances = read_scene(options.scene), read_tolerances(options.scene)

@@ -14,9 +14,9 @@ from refimpl.errors import InputError, require_regular
 from refimpl.identification.forward import response_from_dict
 from refimpl.scene.scene import Scene
 from refimpl.scene.scene_file import scene_to_dict
-from reports.result_files import MOST_BYTES, parsed
 from verification.cli.output import files_of
-from verification.framework.files import to_json, write_text
+from verification.output.files import to_json, write_text
+from verification.output.result_files import MOST_BYTES, parsed
 from verification.sweep.run import code_digest, file_digest
 from verification.sweep.store import checksum, damaged_row
 

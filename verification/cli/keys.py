@@ -1,4 +1,4 @@
-"""`rough-friction keys`: every key of scene and study files, at the prompt and in docs/scene-file.md."""
+"""`rough-friction keys`: every key of scene and study files, at the prompt and on the site."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from verification.cli.options import Options, option, output_file
-from verification.cli.output import check_outputs, emit, refusal, show
-from verification.framework.text_table import columns
+from verification.cli.options import Options, option
+from verification.cli.output import check_outputs, emit
+from verification.output.text_table import columns
 
 if TYPE_CHECKING:
     from refimpl.scene.keys import Key
@@ -20,31 +20,18 @@ if TYPE_CHECKING:
 EPILOG = """examples:
   rough-friction keys
   rough-friction keys length
-  rough-friction keys --markdown docs/scene-file.md
 """
 
 HEAD = ("key", "unit", "default", "meaning", "also in")
 
 OPTIONS: Options = {
     "word": option("keys with this word in them", metavar="WORD", nargs="?", default=""),
-    "--markdown": option("update the tables of keys in a page", metavar="PAGE", type=output_file),
 }
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the keys; status 1 where none has the word."""
-    from verification.framework.files import write_text
-
-    check_outputs((), markdown=options.markdown, json=options.json)
-    if options.markdown is not None:
-        try:
-            text = options.markdown.read_text(encoding="utf-8")
-        except (OSError, ValueError) as unreadable:
-            allowed = f"a page with places for tables, like docs/scene-file.md ({unreadable})"
-            raise refusal("--markdown", str(options.markdown), allowed) from unreadable
-        write_text(page(text), options.markdown)
-        show(f"{options.markdown}: {sum(map(len, _tables().values()))} keys")
-        return 0
+    check_outputs((), json=options.json)
     word = options.word.lower()
     found = {
         title: [key for key in keys if word in f"{key.name} {key.meaning}".lower()]
@@ -58,12 +45,12 @@ def run(options: argparse.Namespace) -> int:
 def page(text: str) -> str:
     """Return a page with the table of keys after each comment that names one, ``<!-- NAME -->``.
 
-    What a key allows is printed at the prompt alone: with it the tables are too wide for a page.
+    What a key allows is printed at the prompt alone: with it the tables are too wide for the site.
     """
     found = {title.removeprefix("surface, "): keys for title, keys in _tables().items()}
     tables = {name: _markdown_table(name, keys) for name, keys in found.items()}
-    place = re.compile(rf"(<!-- ({'|'.join(tables)}) -->\n\n)(?:\|.*\n)*")
-    return place.sub(lambda found: f"{found[1]}{tables[found[2]]}\n", text)
+    place = re.compile(rf"<!-- ({'|'.join(tables)}) -->")
+    return place.sub(lambda found: tables[found[1]], text)
 
 
 def _markdown_table(name: str, keys: tuple[Key, ...]) -> str:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Self, TypeVar
 
-from verification.framework.files import is_stream, rewrite_line, to_json, write_text
+from verification.output.files import is_stream, rewrite_line, to_json, write_text
 
 if TYPE_CHECKING:
     from refimpl import InputError, Scene

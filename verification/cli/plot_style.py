@@ -72,7 +72,7 @@ def write(figure: Figure, path: Path, dpi: int = DPI) -> None:
     """Write a figure in the format of its suffix, in one step, and close it."""
     import matplotlib.pyplot as plt
 
-    from verification.framework.files import replacing
+    from verification.output.files import replacing
 
     try:
         with replacing(path) as temporary:

@@ -30,8 +30,8 @@ from verification.cli.output import (
     refusal,
 )
 from verification.cli.solve_table import document, not_usable, show_finished, table
-from verification.framework.files import is_stream
-from verification.framework.text_table import wrapped
+from verification.output.files import is_stream
+from verification.output.text_table import wrapped
 
 if TYPE_CHECKING:
     from refimpl import Scene, Solution
@@ -150,7 +150,7 @@ def run(options: argparse.Namespace) -> int:
         show_finished(interrupt, options.scene)
         raise
     _write_files(solution, scene, options)
-    found = document(solution, options.scene)
+    found = document(solution, options.scene) if options.json else {}
     text = table(solution, options.scene, waited=time.perf_counter() - began)
     if tolerances or options.budget:
         text = _with_budget(scene, solution, tolerances, options, found, text)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from verification.cli.output import plain
-from verification.framework.text_table import columns, wrapped
+from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from refimpl import Solution
@@ -36,14 +36,14 @@ def show_finished(interrupt: KeyboardInterrupt, scene: str) -> None:
 
 def document(solution: Solution, scene: str) -> dict[str, object]:
     """The JSON of a solve: SI units and the names of `refimpl.Solution`; arrays are for the VTK file."""
-    from verification.framework.provenance import provenance
+    from verification.output.provenance import provenance
 
     summary = {key: plain(value) for key, value in solution.summary().items()}
     return {"scene": scene, **summary, "not_usable": not_usable(solution), "provenance": provenance()}
 
 
 def table(solution: Solution, scene: str, waited: float | None = None) -> str:
-    """Return the numbers, how well they converged, the terms not modelled, and the warnings.
+    """Return the numbers, how well they converged, the terms not modelled, the warnings, and the notes.
 
     ``waited`` : seconds with reading, bars and warnings; by default those of the solves alone
     """
@@ -54,6 +54,7 @@ def table(solution: Solution, scene: str, waited: float | None = None) -> str:
         [name, value, " ".join(rest), unit] for name, (value, *rest), unit in rows(solution, "command")
     ]
     summary = solution.summary()
+    warnings = summary["warnings"]
     certificate = [
         [_RESIDUALS.get(name, name.replace("_", " ")), f"{value:.2g}"]
         for name, value in summary["certificate"].items()
@@ -69,7 +70,8 @@ def table(solution: Solution, scene: str, waited: float | None = None) -> str:
         columns(numbers),
         f"certificate, each residual within {summary['tolerance']:g} (0 is exact):\n{columns(certificate)}",
         f"not modelled:\n{columns(not_modelled)}" if not_modelled else "",
-        *(wrapped(w["text"], f"warning ({w['name']}): ") for w in summary["warnings"]),
+        *(wrapped(w["text"], f"warning ({w['name']}): ") for w in warnings if w["limit"] is not None),
+        "\n".join(wrapped(w["text"], "note: ") for w in warnings if w["limit"] is None),
     ]
     return "\n\n".join(part for part in parts if part)
 

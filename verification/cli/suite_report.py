@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from verification.cli.output import judgement
-from verification.framework.text_table import columns, wrapped
+from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

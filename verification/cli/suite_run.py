@@ -11,7 +11,7 @@ from verification.cli import suite_report, suite_table
 from verification.cli.options import Options, declare, option, output_file
 from verification.cli.output import check_suffix, emit, refusal, select_or_refuse
 from verification.cli.suite_report import Judged
-from verification.framework.text_table import columns
+from verification.output.text_table import columns
 
 if TYPE_CHECKING:
     from verification.framework.case import Result
@@ -87,7 +87,7 @@ def chosen(options: argparse.Namespace) -> bool:
 def run(options: argparse.Namespace) -> int:
     """Run or list the suite; status 1 when a case failed or broke, or none passed."""
     from verification.framework.case import readable
-    from verification.framework.files import write_text
+    from verification.output.files import write_text
     from verification.solver_suite import convergence, suite
     from verification.solver_suite.process import Ended
 
@@ -125,7 +125,7 @@ def _judged(
 ) -> Judged:
     """Judge the solver case by case; an end by a signal keeps the verdicts so far."""
     from refimpl.operating_system import END_SIGNALS
-    from verification.framework.files import Progress
+    from verification.output.files import Progress
     from verification.solver_suite import isolated
     from verification.solver_suite.process import Ended, unwinding
 

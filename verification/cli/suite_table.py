@@ -13,7 +13,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from verification.framework.provenance import ROOT
+from verification.output.provenance import ROOT
 
 if TYPE_CHECKING:
     from verification.framework.case import Result
@@ -42,7 +42,7 @@ def run_entry(identity: Mapping[str, Any], suite: str, results: Iterable[Result]
 
 def published(path: Path = PUBLISHED) -> list[dict[str, Any]]:
     """Entries of the published codes, without set-ups that are wrong on purpose; none without the file."""
-    from reports.result_files import read_result
+    from verification.output.result_files import read_result
 
     if not path.is_file():
         return []

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from verification.cli import export, suite_run
 from verification.cli.options import Options, option
 from verification.cli.output import check_workers, emit, judgement, refusal, select_or_refuse
-from verification.framework.text_table import columns
+from verification.output.text_table import columns
 
 if TYPE_CHECKING:
     from verification.framework.runner import Run

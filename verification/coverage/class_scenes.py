@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import argparse
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
 import refimpl as rf
-from refimpl.grid import Array
 from refimpl.model.materials import Pair
 from verification.coverage.drawing import SIDE, Ball, Dice, Wave, measured_like
-from verification.framework.files import Progress
+from verification.coverage.textures import Profile, RoundedPunch, Spots
 
 RMS = 1e-7  # m
+GRIDS = 48, 64, 96, 128  # elements along the longer side of the grids that are judged
+SIMPLE = (1, 0), (0, 1), (1, 1), (1, -1), (1, 2), (2, 1), (1, -2), (3, 1), (2, 3), (3, -2)  # directions
 
 
 class _Draw(Dice):
@@ -35,6 +34,14 @@ class _Draw(Dice):
         self.ball = not self.periodic  # presses the surface, instead of a flat
         self.pressed_share = 0.05, 0.6  # range of the load over that of full contact
         self.radii = 0.1, 0.3  # range of Hertz's contact radius over the shorter side
+        self.slope: float | None = None  # rms gradient that sets the load, in place of the surface's
+        self.other: rf.Surface | None = None  # roughness of the upper body
+        self.known: tuple[float, float] | None = None  # load (N) and contact radius (m), in closed form
+
+    def elements(self, low: float, high: float) -> float:
+        """Return a length (m) of so many elements on one of `GRIDS`."""
+        spacing = float(max(self.size)) / self.log(GRIDS[0], GRIDS[-1])
+        return spacing * self.log(low, high)
 
     def lengths(self) -> tuple[float, float]:
         """Correlation lengths of a lay, three to ten to one within the shorter side."""
@@ -126,6 +133,94 @@ def _self_affine(draw: _Draw) -> rf.Surface:
     )
 
 
+def _textured(draw: _Draw, sign: float, number: int) -> rf.Surface:
+    """Pads or dimples 1 to 15 elements wide, or wider where few, with round or sharp rims."""
+    draw.size = (SIDE, SIDE)
+    cell = SIDE / number
+    radius = min(0.5 * draw.elements(1, 15) if sign < 0 else cell * draw.log(0.15, 0.42), 0.42 * cell)
+    rounded, square = bool(draw.rng.integers(2)), bool(draw.rng.random() < 0.3)
+    rim = (0.48 * cell - radius) * draw.log(0.2, 1.0) if rounded else min(draw.elements(0.05, 1), 0.05 * cell)
+    height = RMS * draw.log(1, 30)
+    draw.slope = height / cell
+    draw.ball = draw.ball or not draw.periodic
+    return Pads(sign * height, (number, number), radius, rim, draw.seed, square, rounded)
+
+
+def _pads(draw: _Draw) -> rf.Surface:
+    return _textured(draw, 1.0, int(draw.rng.integers(1, 6)))
+
+
+def _dimples(draw: _Draw) -> rf.Surface:
+    return _textured(draw, -1.0, int(draw.rng.integers(2, 9)))
+
+
+def _profile(draw: _Draw, shape: str) -> rf.Surface:
+    draw.size = (SIDE, SIDE)
+    m, n = SIMPLE[draw.rng.integers(4 if draw.rng.random() < 0.6 else len(SIMPLE))]
+    number, top = int(draw.rng.integers(1, 5 if abs(m * n) < 2 else 3)), draw.log(0.1, 0.8)
+    wall = min(draw.elements(0.2, 4) * math.hypot(m, n) * number / SIDE, 0.9 * (1 - top))
+    height = RMS * draw.log(1, 10)
+    draw.slope = height * number * math.hypot(m, n) / SIDE
+    return Profile(shape, height, (m * number, n * number), float(draw.rng.random()), top, wall)
+
+
+def _steps(draw: _Draw) -> rf.Surface:
+    return _profile(draw, "steps")
+
+
+def _teeth(draw: _Draw) -> rf.Surface:
+    return _profile(draw, "teeth")
+
+
+def _ridges(draw: _Draw) -> rf.Surface:
+    return _profile(draw, "ridges")
+
+
+def _both_rough(draw: _Draw) -> rf.Surface:
+    """Roughness of Eq. (9), self-affine roughness or grooves on either body."""
+    laws: list[Kind] = [_isotropic, _self_affine, _oblique, _grooves]
+    lower, upper = (laws[k] for k in draw.rng.permutation(len(laws))[:2])
+    surface: rf.Surface = lower(draw)
+    other: rf.Surface = upper(draw)
+    height = draw.log(0.2, 1.0)
+    if isinstance(other, Wave):
+        draw.other = replace(other, amplitude=height * RMS)
+    else:
+        draw.other = other.with_parameter("rms", height * RMS).with_parameter("seed", draw.seed + 1)
+    return surface
+
+
+def _short_waves(draw: _Draw) -> rf.Surface:
+    short = draw.elements(0.3, 4)
+    roll_off = max(min(draw.size) * draw.log(0.1, 0.4), 1.5 * short)
+    return rf.SelfAffineRoughness(
+        hurst=float(draw.rng.uniform(0.5, 1.0)),
+        rms=RMS,
+        roll_off=roll_off,
+        long_cut=min(roll_off * draw.log(1.0, 2.0), min(draw.size)),
+        short_cut=short,
+        seed=draw.seed,
+    )
+
+
+def _mostly_contact(draw: _Draw) -> rf.Surface:
+    """Rough planes of which 60 to 95 % are in contact."""
+    draw.periodic, draw.ball, draw.pressed_share = True, False, (0.9, 2.2)
+    return _isotropic(draw)
+
+
+def _rounded_punch(draw: _Draw) -> rf.Surface:
+    """A punch with a rounded rim between like bodies, of which contact radius and pressure are known."""
+    draw.size, draw.periodic, draw.upper = (SIDE, SIDE), False, draw.lower
+    draw.modulus = Pair(lower=draw.lower, upper=draw.lower).reduced_modulus
+    a = SIDE * draw.log(0.08, 0.3)
+    b = a * float(draw.rng.uniform(0.6, 0.98))
+    x, y = (float(c) for c in draw.rng.uniform(-0.5, 0.5, 2) * (SIDE - 2.4 * a))
+    punch = RoundedPunch(b, a / draw.log(1e-4, 1e-3), (x, y))
+    draw.known = punch.load(a, draw.modulus), a
+    return punch
+
+
 CLASSES: dict[str, Kind] = {
     "isotropic": _isotropic,
     "lay along sliding": _lay(0.0),
@@ -142,96 +237,54 @@ CLASSES: dict[str, Kind] = {
     "4:1 rectangles": _slender,
     "nearly full": _nearly_full,
     "ball on data": _data,
+    "rounded punches": _rounded_punch,
+    "dimpled flats": _dimples,
+    "steps": _steps,
+    "saw teeth": _teeth,
+    "pads": _pads,
+    "both bodies rough": _both_rough,
+    "short waves": _short_waves,
+    "60 to 95 % contact": _mostly_contact,
+    "capped dimples": _dimples,
+    "ridges": _ridges,
 }
 
 
-MEASURED, DECIMATED = "windows of a measured map", "decimated maps"
-WHOLE = 256  # points of a window that is decimated
-
-
-def read_heights(path: Path) -> Array:
-    """Return the heights of a measured surface at its own points (m)."""
-    surface = rf.MeasuredSurface(path)
-    lengths = surface.extent((0.0, 0.0))
-    pitch = surface.pitch(lengths)
-    shape = round(lengths[0] / pitch), round(lengths[1] / pitch)
-    return surface.sample(rf.Grid(shape, lengths))
-
-
-def windows_of(heights: Array, *, whole: bool = False) -> Kind:
-    """Return the class of random square windows of a measured map, at one rms height: 100 to 300 points, or
-    `WHOLE`."""
-
-    def window(draw: _Draw) -> rf.Surface:
-        points = WHOLE if whole else min(int(draw.rng.integers(100, 301)), *heights.shape)
-        i, j = (int(draw.rng.integers(length - points + 1)) for length in heights.shape)
-        z = heights[i : i + points, j : j + points]
-        draw.size, draw.periodic = (SIDE, SIDE), False
-        return rf.ArraySurface(RMS * (z - z.mean()) / z.std())
-
-    return window
-
-
-def decimated(one: rf.Scene, seed: int) -> tuple[rf.Scene, int]:
-    """Return the scene with every second or fourth point of its map, and a grid of two elements a point."""
-    step = (2, 4)[seed % 2]
-    z = one.lower.surface.parts[0].sample(one.grid(WHOLE))[::step, ::step]
-    return replace(one, lower=rf.Body(one.lower.material, rf.ArraySurface(z))), 2 * len(z)
-
-
-def options(module: str, description: str | None, scenes: int) -> argparse.ArgumentParser:
-    """Return the options of a study by class: seeds, a measured map, and the file to write."""
-    parser = argparse.ArgumentParser(
-        prog=f"python -m verification.coverage.{module}", description=description
-    )
-    parser.add_argument("--first", type=int, default=0, help="first seed")
-    parser.add_argument("--scenes", type=int, default=scenes, help="of each class")
-    parser.add_argument("--map", type=Path, help="a measured surface, of which windows are a class more")
-    parser.add_argument("--json", type=Path, required=True)
-    return parser
-
-
-def each(classes: Mapping[str, Kind], first: int, scenes: int) -> Iterator[tuple[str, int]]:
-    """Yield class and seed of every scene, with a line of progress."""
-    progress = Progress(len(classes) * scenes)
-    for kind in classes:
-        for seed in range(first, first + scenes):
-            yield kind, seed
-            progress.tick(f"{kind}, {seed}")
-    progress.close()
-
-
-def scene(kind: str, seed: int, classes: Mapping[str, Kind] = CLASSES) -> rf.Scene:
+def scene(kind: str, seed: int) -> rf.Scene:
     """Return the scene of a seed: its class's roughness on a flat, or under a ball where it is free."""
     draw = _Draw(kind, seed)
-    surface = classes[kind](draw)
+    surface = CLASSES[kind](draw)
     probe = rf.Scene(
-        upper=rf.Body(draw.upper, rf.Flat()),
+        upper=rf.Body(draw.upper, draw.other or rf.Flat()),
         lower=rf.Body(draw.lower, surface),
         friction=rf.Friction(),
         load=1.0,
         size=draw.size,
         periodic=draw.periodic,
     )
+    if draw.known is not None:
+        load, a = draw.known
+        return _with_friction(draw, kind, probe, load, load / (math.pi * a**2))
     grid = probe.grid(128)
-    slope = math.sqrt(sum(float(np.mean(g**2)) for g in grid.gradient(surface.sample(grid))))
-    height = float(np.std(surface.sample(grid)))
+    z = surface.sample(grid) - (draw.other.sample(grid) if draw.other else 0.0)
+    slope = draw.slope or math.sqrt(sum(float(np.mean(g**2)) for g in grid.gradient(z)))
+    height = float(np.std(z))
+    pressed = 0.5 * draw.modulus * slope  # in contact, by Bush et al. 1975
     if not draw.ball:
-        pressed = 0.5 * draw.modulus * slope  # in contact, by Bush et al. 1975
         share = draw.log(*draw.pressed_share)
         return _with_friction(draw, kind, probe, share * pressed * SIDE * min(draw.size), pressed)
     a = min(draw.size) * draw.log(*draw.radii)
     height = height or a / 1500  # a ball on a flat has 50 to 1000 times the contact's radius
     ball = Ball(draw.modulus, a**2 / (height * draw.log(1.5, 30)), a)
-    pressed = max(ball.pressure, 0.5 * draw.modulus * slope)
-    under = replace(probe, upper=rf.Body(draw.upper, rf.Sphere(ball.R)))
-    return _with_friction(draw, kind, under, ball.load, pressed)
+    shape: rf.Surface = rf.Sphere(ball.R)
+    under = replace(probe, upper=rf.Body(draw.upper, shape + draw.other if draw.other else shape))
+    return _with_friction(draw, kind, under, ball.load, max(ball.pressure, pressed))
 
 
 def _with_friction(draw: _Draw, kind: str, base: rf.Scene, load: float, pressed: float) -> rf.Scene:
     friction = rf.Friction(tau=pressed * draw.log(0.01, 0.3), beta=draw.log(0.01, 0.3))
     lower = base.lower
-    if kind == "capped":
+    if kind.startswith("capped"):
         H = max(pressed * draw.log(0.7, 3), 2 * load / (base.lengths[0] * base.lengths[1]))
         lower = rf.Body(replace(lower.material, hardness=H), lower.surface)
     return replace(base, lower=lower, friction=friction, load=load, sliding_direction=draw.direction)

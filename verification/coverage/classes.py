@@ -1,8 +1,9 @@
-"""Error bars by class of scene: ``python -m verification.coverage.classes --scenes 100 --json FILE``.
+"""Error bars by class of scene: how those of stored scenes cover their errors (`verification.coverage.fit`).
 
-A scene is solved on a grid of 48 to 128 elements along its longer side, and judged against one of four to ten
-times as many. Half of the scenes are free, half periodic; half are squares, half rectangles; maps are free
-and square. Each number's bar is that of the single grid, as ``solve(scene, grid=M)`` states it.
+A scene is solved on grids of 48 to 128 elements along its longer side, and judged against a reference of
+three to eight times as many, or a number in closed form. Half of the scenes are free, half periodic; half are
+squares, half rectangles; maps are free and square. Each number's bar is that of the single grid, as
+``solve(scene, grid=M)`` states it.
 """
 
 from __future__ import annotations
@@ -14,77 +15,74 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
-import refimpl as rf
 from refimpl.accuracy.digits import LARGEST_SHARE
+from refimpl.accuracy.discretisation_error import estimates
 from refimpl.accuracy.grid_features import GridFeatures
-from refimpl.solution.quantities import error_bound
-from verification.coverage.class_scenes import (
-    CLASSES,
-    DECIMATED,
-    MEASURED,
-    decimated,
-    each,
-    options,
-    read_heights,
-    scene,
-    windows_of,
-)
+from refimpl.accuracy.refinement import uncertainty
+from verification.coverage.building import Solved
 from verification.coverage.judge import EDGE_SIZE_BOUND
-from verification.framework.case import jsonable
-from verification.framework.files import write_result
-from verification.framework.provenance import provenance
-from verification.framework.text_table import columns
 
-GRIDS = (48, 64, 96, 128)
-REFERENCE = 512  # along the longer side
 NUMBERS = (
     "friction_coefficient_corrected",
     "friction_coefficient",
     "contact_area",
     "contact_area_corrected",
+    "plastic_area",
     "max_pressure",
     "approach",
 )
 LEVEL = 0.92
 
 
-def single_grid_rows(one: rf.Scene, M: int, known: rf.Scene | None = None) -> list[dict[str, Any]] | None:
-    """Return bar, error and the reference's bound, over each number; None where a solve did not end well.
+def rows(scenes: Iterable[Solved]) -> list[dict[str, Any]]:
+    """Return bar, error and the reference's bound, over each number, of one grid of every scene."""
+    chosen = ((one, one.grids[one.seed % (len(one.grids) - 1)]) for one in scenes)
+    return [
+        {"class": one.kind, "seed": one.seed, "M": max(grid.grid.shape), **row}
+        for one, grid in chosen
+        for row in _grid_rows(grid, one)
+    ]
 
-    ``known`` replaces the scene on the coarse grid.
-    """
-    finest = rf.solve(one, grid=REFERENCE)
-    coarse = rf.solve(known or one, grid=M)
-    if not (coarse.converged and finest.converged) or coarse.contact_area == 0:
-        return None
-    rows = []
+
+def _grid_rows(grid: GridFeatures, one: Solved) -> list[dict[str, Any]]:
+    found, bars = [], uncertainty([grid])
     for name in NUMBERS:
-        exact, bound = reference(finest, name)
-        found = float(getattr(coarse, name))
-        lengths = error_bound(coarse, name), abs(found - exact), bound
-        shares = (length / abs(found) if length else 0.0 for length in lengths)
+        exact, bound = reference(one.grids[-1], name)
+        number = grid.numbers[name]
+        if number == 0:
+            continue
+        if (raw := _RAW.get(name, name)) in one.exact:
+            exact, bound = one.exact[raw], 0.0
+        lengths = sum(bars[name].values()), abs(number - exact), bound
+        shares = (length / abs(number) if length else 0.0 for length in lengths)
         row = dict(zip(("bar", "error", "reference_bound"), shares, strict=True))
-        rows.append(row | {"number": name, "too_large": found > exact})
-    return rows
+        found.append(row | {"number": name, "too_large": number > exact})
+    return found
 
 
-def reference(finest: rf.Solution, name: str) -> tuple[float, float]:
+_RAW = {
+    "friction_coefficient_corrected": "friction_coefficient",
+    "contact_area_corrected": "contact_area",
+}
+"""Numbers of which others are corrected."""
+
+
+def reference(features: GridFeatures, name: str) -> tuple[float, float]:
     """Return a number of the finest grid without its edges' mean excess, and a bound of what is left."""
-    features: GridFeatures = finest.details.features
-    value = float(getattr(finest, name))
     bound = math.hypot(
         EDGE_SIZE_BOUND * features.edge,
         0.5 * math.sqrt(features.straight.squares) * features.grid.element_area,
     )
-    if name == "contact_area":
-        return value - features.excess, bound
-    if name == "contact_area_corrected":
-        return finest.contact_area - features.excess, bound
+    if name in ("contact_area", "contact_area_corrected"):
+        return features.numbers["contact_area_corrected"], bound
     if name in ("friction_coefficient", "friction_coefficient_corrected"):
-        return finest.friction_coefficient - features.dmu_dA * features.excess, features.dmu_dA * bound
+        return features.numbers["friction_coefficient_corrected"], features.dmu_dA * bound
+    own = sum(uncertainty([features])[name].values())
     if name == "max_pressure" and not features.yields:
-        return features.peak.height, error_bound(finest, name)
-    return value, error_bound(finest, name)
+        return features.peak.height, own
+    if name == "plastic_area":
+        return estimates([features])[name].value, own
+    return features.numbers[name], own
 
 
 def summary(rows: Iterable[dict[str, Any]]) -> dict[str, Any]:
@@ -96,7 +94,8 @@ def summary(rows: Iterable[dict[str, Any]]) -> dict[str, Any]:
     rows = list(rows)
     held = sum(row["error"] <= row["bar"] for row in rows)
     short = [row for row in rows if row["bar"] <= LARGEST_SHARE]
-    finite = [row["bar"] / row["error"] for row in rows if row["error"] > 0]
+    finite = [row["bar"] / row["error"] for row in rows if row["error"] > 0 and math.isfinite(row["bar"])]
+    missed = [row["error"] / row["bar"] for row in rows if row["error"] > row["bar"] > 0]
     bounded = [row for row in rows if math.isfinite(row["bar"])]
     off = sum(row["error"] * (1 if row["too_large"] else -1) for row in bounded)
     bars = sum(row["bar"] for row in bounded)
@@ -110,41 +109,17 @@ def summary(rows: Iterable[dict[str, Any]]) -> dict[str, Any]:
         "p": test.pvalue,
         "bias_over_bar": off / bars if bars else None,
         "median_bar_over_error": float(np.median(finite)) if finite else None,
+        "unbounded": 1 - len(bounded) / len(rows),
+        "longest_miss": max(missed, default=None),
     }
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Judge the scenes of all classes, write the document and print its table."""
-    parser = options("classes", __doc__, scenes=100)
-    parser.add_argument("--only", help="one class")
-    chosen = parser.parse_args(arguments)
-    classes = dict(CLASSES)
-    if chosen.map is not None:
-        heights = read_heights(chosen.map)
-        classes |= {MEASURED: windows_of(heights), DECIMATED: windows_of(heights, whole=True)}
-    if chosen.only:
-        classes = {name: kind for name, kind in classes.items() if name == chosen.only}
-    found: list[dict[str, Any]] = []
-    lost: dict[str, int] = dict.fromkeys(classes, 0)
-    for kind, seed in each(classes, chosen.first, chosen.scenes):
-        M = GRIDS[seed % len(GRIDS)]
-        one, known = scene(kind, seed, classes), None
-        if kind == DECIMATED:
-            known, M = decimated(one, seed)
-        rows = single_grid_rows(one, M, known)
-        lost[kind] += rows is None
-        found += [{"class": kind, "seed": seed, **row} for row in rows or ()]
-    table = tables(found)
-    rows = sorted(found, key=lambda row: str(row["number"]))
-    document = {
-        "provenance": provenance(),
-        "first": chosen.first,
-        "not_converged": lost,
-        "table": table,
-        "rows": [{name: _short(value) for name, value in row.items()} for row in rows],
-    }
-    write_result(jsonable(document), chosen.json)
-    print(columns(lines(table), indent=""))
+def document(scenes: Sequence[Solved]) -> dict[str, Any]:
+    """Return the table and the rows of the scenes as a result file has them."""
+    found = rows(scenes)
+    seeds = sorted({one.seed for one in scenes})
+    short = [{name: _short(value) for name, value in row.items()} for row in found]
+    return {"seeds": [seeds[0], seeds[-1]], "table": tables(found), "rows": short}
 
 
 def _short(value: Any) -> Any:
@@ -170,6 +145,7 @@ def lines(table: Sequence[dict[str, Any]]) -> list[list[str]]:
         "held_at_worst": ("with the reference's bound", ".3f"), "usable": ("usable", ".2f"),
         "held_of_usable": ("of these", ".3f"), "p": ("p", ".2g"),
         "bias_over_bar": ("bias/bar", "+.2f"), "median_bar_over_error": ("bar/error", ".2f"),
+        "unbounded": ("unbounded", ".2f"), "longest_miss": ("longest miss", ".2f"),
     }  # fmt: skip
     names = [row | {name: row[name] or "all" for name in ("class", "number")} for row in table]
     return [[head for head, _ in shown.values()]] + [
@@ -177,6 +153,3 @@ def lines(table: Sequence[dict[str, Any]]) -> list[list[str]]:
         for row in names
     ]
 
-
-if __name__ == "__main__":
-    main()

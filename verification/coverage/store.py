@@ -11,14 +11,13 @@ from pathlib import Path
 from typing import Any
 
 import refimpl as rf
-from refimpl.accuracy.contact_edge import EdgeOffset
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.peak import Peak
 from refimpl.accuracy.refinement import FIRST_GRIDS, longer_side
 from refimpl.grid.straight_edges import StraightEdges
 from refimpl.model.friction import FrictionLaw, is_frictionless
 from verification.coverage.scenes import random_scene
-from verification.framework.files import Progress
+from verification.output.files import Progress
 
 NUMBERS = ("friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure")
 FINEST = 512  # elements per side that may be requested; beyond are references
@@ -80,15 +79,17 @@ def grid_solves(path: Path) -> Iterator[GridSolve]:
             record = json.loads(line)
         except json.JSONDecodeError:
             continue
-        yield GridSolve(**{**record, "result": _features(record["result"])})
+        yield GridSolve(**{**record, "result": features_of(record["result"])})
 
 
-def _features(record: dict[str, Any]) -> GridFeatures:
+def features_of(record: dict[str, Any]) -> GridFeatures:
+    """Return the features that `dataclasses.asdict` made plain."""
     peaks = {name: Peak(**record[name]) for name in ("peak", "first_contact")}
     straight = {name: StraightEdges(**record[name]) for name in ("straight", "plastic_straight")}
-    grid, offset = record["grid"], EdgeOffset(*record["offset"])
+    tuples = {name: tuple(record[name]) for name in ("faces", "highest_areas")}
+    grid = record["grid"]
     restored = rf.Grid(tuple(grid["shape"]), tuple(grid["lengths"]), grid["periodic"])
-    return GridFeatures(**{**record, **peaks, **straight, "grid": restored, "offset": offset})
+    return GridFeatures(**{**record, **peaks, **straight, **tuples, "grid": restored})
 
 
 def refinements(path: Path) -> dict[int, list[GridSolve]]:

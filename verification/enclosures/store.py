@@ -22,8 +22,8 @@ from refimpl.grid import Array, Mask
 from verification.enclosures.proof import BITS, Ball, Proof
 from verification.enclosures.scenes import SIDE, EnclosedScene
 from verification.exact.kernel_reference import arb
-from verification.framework.files import to_json, write_text
-from verification.framework.provenance import provenance
+from verification.output.files import to_json, write_text
+from verification.output.provenance import provenance
 
 FORMAT = "rough-friction golden scene, version 1"
 _EPS = float(np.finfo(float).eps)

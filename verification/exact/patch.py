@@ -12,6 +12,8 @@ import mpmath as mp
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from appendix_a.fem3d.patch import normal_integral
+
 Array = NDArray[np.float64]
 
 UNCERTAINTY = 1e-13
@@ -38,12 +40,8 @@ class Patch:
     def displacement(self, x: ArrayLike, y: ArrayLike) -> Array:
         """Normal displacement of both bodies together (m) at ``(x, y)`` (m), shapes broadcast."""
         x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-        total = np.zeros(x.shape)
-        for sign_x in (-1, 1):
-            for sign_y in (-1, 1):
-                u, v = x + sign_x * self.width / 2, y + sign_y * self.height / 2
-                total += sign_x * sign_y * (_corner(u, v) + _corner(v, u))
-        return self.pressure / (np.pi * self.modulus) * total
+        integral = normal_integral(x, y, self.width / 2, self.height / 2)
+        return self.pressure / (np.pi * self.modulus) * integral
 
     @property
     def mean_displacement(self) -> float:
@@ -55,11 +53,6 @@ class Patch:
         pair = 2 * a * b * (a * np.arcsinh(b / a) + b * np.arcsinh(a / b))
         pair -= 2 / 3 * (diagonal**3 - a**3 - b**3)
         return float(self.pressure / (np.pi * self.modulus) * pair / (a * b))
-
-
-def _corner(u: Array, v: Array) -> Array:
-    """u asinh(v/|u|), continued by its limit 0 at u = 0."""
-    return u * np.arcsinh(v / np.where(u == 0, 1.0, np.abs(u)))
 
 
 def displacement_by_quadrature(patch: Patch, x: float, y: float) -> tuple[float, float]:

@@ -21,6 +21,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from appendix_a.fem3d.patch import normal_integral
+
 Array = NDArray[np.float64]
 
 UNCERTAINTY_CIRCLE = 1e-15
@@ -131,11 +133,5 @@ def _rectangle(x: Array, y: Array, a: Array, b: Array) -> Array:
     xf, yf, af, bf, df = x[far], y[far], a[far], b[far], distance2[far]
     quadrupole = (af**2 * (3 * xf**2 / df - 1) + bf**2 * (3 * yf**2 / df - 1)) / (6 * df)
     result[far] = 4 * af * bf / np.sqrt(df) * (1 + quadrupole)
-    xn, yn, an, bn = x[~far], y[~far], a[~far], b[~far]
-    near = np.zeros(xn.shape)
-    for sx in (-1, 1):
-        for sy in (-1, 1):
-            u, v = xn + sx * an, yn + sy * bn
-            near += sx * sy * (u * np.arcsinh(v / np.abs(u)) + v * np.arcsinh(u / np.abs(v)))
-    result[~far] = near
+    result[~far] = normal_integral(x[~far], y[~far], a[~far], b[~far])
     return result

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from reports.result_files import write_result
 from verification.experiments.comparison import NAMES, measured
 from verification.experiments.predictions import points
-from verification.framework.provenance import provenance
+from verification.output.provenance import provenance
+from verification.output.result_files import write_result
 
 TEXTS = ("title", "quantity", "unit", "over", "trend_only", "source", "fitted", "reduction", "left_out",
          "failure")  # fmt: skip

@@ -8,10 +8,10 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 
 from verification.framework.case import Result, Status, Tier
-from verification.framework.files import Progress
-from verification.framework.provenance import provenance
 from verification.framework.registry import CASES_PACKAGE, load, select
 from verification.framework.workers import run_all
+from verification.output.files import Progress
+from verification.output.provenance import provenance
 
 FORMAT = "rough-friction results, version 1"
 ERRATUM = ("equation", "printed", "corrected", "measure", "printed_error", "corrected_error")

@@ -129,7 +129,8 @@ ERRATA = (
         "(12)",
         "'psi ~ 2.2 E'/H (sigma_e/epsilon)' with 'epsilon=3.15 um'; 'psi reaches the threshold value of "
         "unity at about sigma_e = 0.5 um'",
-        "conjecture: psi with the correlation length, 104 um, for epsilon",
+        "psi with the correlation length, l = 104 um, for epsilon: 2.2 sigma / l is then the rms slope of "
+        "Eq. (9), sqrt(4.6) sigma / l = 2.14 sigma / l, from the second derivative of the ACF at its origin",
         "|psi(0.5 um) - 1|",
         lambda: _plasticity_misfit(RESOLUTION),
         lambda: _plasticity_misfit(CORRELATION_LENGTH),

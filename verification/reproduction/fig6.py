@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import t as student
 
 import refimpl as rf
 from refimpl.grid import Array
@@ -14,58 +13,81 @@ from verification.reproduction.ensemble import CONFIDENCE
 from verification.reproduction.printed import CORRELATION_LENGTH
 from verification.reproduction.table1 import RADIUS, SMOOTH, hertz, rough
 
-BIN = 25e-6  # m, width of an annulus: about 1/18 of the Hertz radius
+RINGS = 16  # rings of equal area, to half the side of the domain; the innermost is a disc of 0.45 Hertz radii
+RESAMPLES, RESAMPLING_SEED = 4000, 6
 NO_FRICTION = rf.Friction()
 
 
 @dataclass(frozen=True)
 class Profile:
-    """Pressures (Pa) by annuli about the axis: mean over azimuth and realisations, with its 95 % half width.
+    """Pressures (Pa) by rings of equal area about the axis: means over each ring.
 
+    ``surfaces`` has a row per realisation, ``low`` and ``high`` bound the 95 % interval of their mean.
     ``greenwood_tripp`` has the summits of Eq. (9); ``textbook`` the caption's alpha and Johnson's mu = 4.
-    ``outside`` is the share of the load beyond the Hertz radius, one value per realisation.
+    ``r`` (m) are mean radii, ``outside`` is the share of the load beyond the Hertz radius by realisation.
     """
 
     r: Array
-    pressure: Array
-    half_width: Array
+    surfaces: Array
+    low: Array
+    high: Array
     greenwood_tripp: Array
     textbook: Array
     hertz: Array
     outside: Array
 
+    @property
+    def pressure(self) -> Array:
+        """Mean over realisations."""
+        return np.asarray(self.surfaces.mean(axis=0))
+
     def misfit(self, theory: Array) -> float:
-        """Rms difference from a theory, weighted by area, over Hertz' peak."""
-        return self._rms(self.pressure - theory)
+        """Rms difference from a theory by area, over Hertz' peak."""
+        return _rms(self.pressure - theory)
 
     @property
     def without_roughness(self) -> float:
         """The misfit of Hertz' pressure from Greenwood and Tripp's."""
-        return self._rms(self.hertz - self.greenwood_tripp)
+        return _rms(self.hertz - self.greenwood_tripp)
 
     @property
     def misfit_of_half(self) -> float:
         """The misfit of half of Greenwood and Tripp's pressure from theirs, which should not pass."""
-        return self._rms(self.greenwood_tripp / 2)
+        return _rms(self.greenwood_tripp / 2)
 
     @property
     def noise(self) -> float:
-        """Contribution of sampling alone to a misfit: the rms standard error, weighted and scaled alike."""
-        return self._rms(self.half_width / 2)
+        """Contribution of sampling alone to a misfit: the rms standard error."""
+        return _rms(self.surfaces.std(axis=0, ddof=1) / np.sqrt(len(self.surfaces)))
 
-    def _rms(self, pressure: Array) -> float:
-        square = np.sum(self.r * pressure**2) / np.sum(self.r)
-        return float(np.sqrt(square)) / hertz().peak_pressure
+    @property
+    def empty(self) -> float:
+        """Share of realisations without contact in the innermost ring."""
+        return float(np.mean(self.surfaces[:, 0] == 0))
+
+    def farthest(self, theory: Array) -> float:
+        """Largest difference of a ring's mean from a theory, over Hertz' peak."""
+        return float(np.abs(self.pressure - theory).max()) / hertz().peak_pressure
 
     def load_share(self, curve: Array) -> float:
-        """Load that a curve carries on the annuli, all of which lie in the domain, over the load."""
-        areas = np.pi * BIN**2 * (2 * np.arange(len(curve)) + 1)
-        return float(np.sum(areas * curve)) / SMOOTH.load
+        """Load that a curve carries on the rings, all of which lie in the domain, over the load."""
+        return float(curve.mean()) * np.pi * (SMOOTH.lengths[0] / 2) ** 2 / SMOOTH.load
 
-    def central(self, curve: Array) -> float:
-        """Mean of a curve over the inner half of the Hertz circle, over that of Hertz' own pressure."""
-        inner = self.r < hertz().contact_radius / 2
-        return float(np.sum((self.r * curve)[inner]) / np.sum((self.r * self.hertz)[inner]))
+
+def _rms(pressure: Array) -> float:
+    """Root mean square over rings of equal area, over Hertz' peak."""
+    return float(np.sqrt(np.mean(pressure**2))) / hertz().peak_pressure
+
+
+def interval(samples: Array) -> tuple[Array, Array]:
+    """The 95 % interval of the mean over the first axis by the percentile bootstrap (Efron 1979).
+
+    Where contact is rare a ring's pressure is mostly zero and far from normal; this interval ends at zero.
+    """
+    rng = np.random.default_rng(RESAMPLING_SEED)
+    counts = rng.multinomial(len(samples), np.full(len(samples), 1 / len(samples)), RESAMPLES)
+    low, high = np.quantile(counts @ samples / len(samples), [(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2], 0)
+    return low, high
 
 
 def summits(rms: float) -> gt.RoughSphere:
@@ -94,30 +116,31 @@ def contact(rms: float, realisation: int, grid: int) -> rf.Solution:
     return rf.solve(scene, grid, oblique=False)
 
 
-def effective_pressure(rms: float, realisations: int, grid: int) -> Profile:
-    """The averaged pressure, and both theories at the same radii."""
+def effective_pressure(rms: float, first: int, realisations: int, grid: int) -> Profile:
+    """Pressures of realisations from ``first`` on by ring, and both theories' on the same rings."""
     centres = SMOOTH.grid(grid).x - SMOOTH.lengths[0] / 2
     distance = np.hypot(centres[:, None], centres[None, :])
-    ring = (distance / BIN).astype(int)
-    rings = int(SMOOTH.lengths[0] / 2 / BIN)  # whole annuli only
-    inside = ring < rings
-    count = np.bincount(ring[inside], minlength=rings)
-    radius = np.bincount(ring[inside], distance[inside], rings) / count
-    means, outside, beyond = [], [], distance > hertz().contact_radius
-    for k in range(realisations):
-        pressure = contact(rms, k, grid).pressure
-        means.append(np.bincount(ring[inside], pressure[inside], rings) / count)
-        outside.append(pressure[beyond].sum() / pressure.sum())
-    pressure, theory = np.array(means), gt.solve(summits(rms))
-    edges = np.minimum(np.arange(rings + 1) * BIN / hertz().contact_radius, 1.0)
-    load_between = -SMOOTH.load * np.diff((1 - edges**2) ** 1.5)  # Hertz' load on each annulus
-    factor = student.ppf((1 + CONFIDENCE) / 2, realisations - 1) / np.sqrt(realisations)
+    ring = (RINGS * (2 * distance / SMOOTH.lengths[0]) ** 2).astype(int)
+    inside = ring < RINGS
+    count = np.bincount(ring[inside])
+
+    def by_ring(field: Array) -> Array:
+        return np.bincount(ring[inside], field[inside]) / count
+
+    def averaged(theory: gt.EffectivePressure) -> Array:
+        values, which = np.unique(distance, return_inverse=True)
+        return by_ring(theory.at(values)[which].reshape(distance.shape))
+
+    solved = [contact(rms, first + k, grid).pressure for k in range(realisations)]
+    surfaces = np.array([by_ring(pressure) for pressure in solved])
+    beyond, (low, high) = distance > hertz().contact_radius, interval(surfaces)
     return Profile(
-        r=radius,
-        pressure=pressure.mean(axis=0),
-        half_width=factor * pressure.std(axis=0, ddof=1),
-        greenwood_tripp=theory.at(radius),
-        textbook=gt.solve(textbook(rms)).at(radius),
-        hertz=load_between / (np.pi * BIN**2 * (2 * np.arange(rings) + 1)),
-        outside=np.array(outside),
+        r=by_ring(distance),
+        surfaces=surfaces,
+        low=low,
+        high=high,
+        greenwood_tripp=averaged(gt.solve(summits(rms))),
+        textbook=averaged(gt.solve(textbook(rms))),
+        hertz=by_ring(hertz().pressure(distance)),
+        outside=np.array([pressure[beyond].sum() / pressure.sum() for pressure in solved]),
     )

@@ -36,7 +36,7 @@ import numpy as np
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
 from refimpl.operating_system import kill_group, words_of
-from reports.result_files import parsed
+from verification.output.result_files import parsed
 from verification.solver_suite.identity import Identity, of_command
 from verification.solver_suite.process import exit_text
 from verification.solver_suite.protocol import NUMBERS, Abilities, Answer, BadAnswer, ContactProblem, Coupling

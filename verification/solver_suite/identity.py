@@ -12,7 +12,7 @@ import sys
 from collections.abc import Sequence
 from importlib.metadata import Distribution, distribution, packages_distributions
 
-from verification.framework.provenance import or_none
+from verification.output.provenance import or_none
 
 Identity = dict[str, str | None]
 DIGITS = 16

@@ -10,7 +10,7 @@ from typing import Any
 
 from refimpl.operating_system import processor_time
 from verification.framework.case import jsonable
-from verification.framework.provenance import provenance
+from verification.output.provenance import provenance
 from verification.stress_tests import conditioning, precision, uniqueness
 from verification.stress_tests.axes import AXES, states
 from verification.stress_tests.limits import LIMITS

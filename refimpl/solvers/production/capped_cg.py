@@ -8,6 +8,7 @@ elements is what the capped ones leave of it.
 from __future__ import annotations
 
 import math
+from typing import Self
 
 import numpy as np
 
@@ -34,6 +35,12 @@ class CappedCG(ProjectedCG):
         self.capped: Mask = np.zeros(pressure.shape, dtype=bool)
         self._pressing[self._pressing >= cap * (1 - VANISHING)] = 0.0
         self._move_to_cap(pressure >= cap * (1 - VANISHING))
+
+    def copy(self) -> Self:
+        """Return CG with a state of its own."""
+        other = super().copy()
+        other.capped = self.capped.copy()
+        return other
 
     @property
     def contact(self) -> Mask:
@@ -65,15 +72,17 @@ class CappedCG(ProjectedCG):
         free elements, as in the certificate.
         """
         f, v, approach = self.pressure, self.separation, self.approach
-        energy = 0.5 * inner(f, self.normal_displacement)
+        shares = f / (float(f.sum()) or 1.0)
+        energy = 0.5 * inner(shares, self.normal_displacement)
         excess = v - approach
-        gap = float(np.sum(f * np.maximum(excess, 0)) + np.sum((self._cap - f) * np.maximum(-excess, 0)))
+        room = (self._cap - f) / (float(f.sum()) or 1.0)
+        gap = float(np.sum(shares * np.maximum(excess, 0)) + np.sum(room * np.maximum(-excess, 0)))
         if self._approach is not None and self._pressing.any():
-            gap = max(gap, abs(self._separate().mean - approach) * float(f.sum()))
+            gap = max(gap, abs(self._separate().mean - approach))
         lowest = float(np.min(v, where=~self.capped, initial=math.inf))
         missed = 0.0 if self._target is None else abs(inner(self._K, f) - self._target) / self._target
         rounding = self._rounding * float(f.max())
-        relative, penetration = contact_residuals(gap, energy, approach, lowest, rounding, float(f.sum()))
+        relative, penetration = contact_residuals(gap, energy, approach, lowest, rounding)
         return max(relative, missed), penetration
 
     def undecided(self, stiffness: float, among: Mask | None = None) -> int:

@@ -8,13 +8,14 @@ enough; where it is strong they are mixed (`anderson`).
 from __future__ import annotations
 
 import math
+from copy import copy
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from refimpl.grid import Array, Mask
-from refimpl.model.certificate import displacement_rounding
+from refimpl.model.certificate import mean_rounding
 from refimpl.model.problem import Problem
 from refimpl.model.state import SolverResult, Status
 from refimpl.operators.influence import WindowInfluence, whole_grid_influence
@@ -32,7 +33,7 @@ def projected_cg(
     problem: Problem, operator: WindowInfluence, precondition: Apply, pressure: Array
 ) -> ProjectedCG:
     """Return CG for a window's problem, with a second bound where pressures are capped."""
-    compliance, rounding = pressure_compliance(problem, operator), displacement_rounding(problem)
+    compliance, rounding = pressure_compliance(problem, operator), mean_rounding(problem, operator)
     if math.isinf(problem.cap):
         return ProjectedCG(compliance, precondition, pressure, rounding)
     return CappedCG(compliance, precondition, np.minimum(pressure, problem.cap), problem.cap, rounding)
@@ -101,6 +102,24 @@ class LevelSolver:
     def _full_indentation(self) -> Array | None:
         used = self.lagged.indentation
         return None if used is None else self.full(used)
+
+    def copy(self) -> LevelSolver:
+        """Return the solver with a state of its own."""
+        other = copy(self)
+        other.cg = self.cg.copy()
+        other.lagged = self.lagged.on(other.cg)
+        return other
+
+    def restore(self, copied: LevelSolver) -> None:
+        """Go back to a copy; CG steps are counted on."""
+        steps = self.cg_iterations
+        vars(self).update(vars(copied))
+        self.cg_iterations = steps
+
+    @property
+    def pressure(self) -> Array:
+        """Present pressure on the window (Pa)."""
+        return self.cg.pressure
 
     @property
     def contact(self) -> Mask:

@@ -39,11 +39,14 @@ def solve_fft(
     iterations: dict[str, int] = {}
     nested = nested_problems(problem, above=start.shape if start else None)
     coarsest = nested.pop(0)
-    solver = from_guess(coarsest, start, counter) if start else _from_winkler(coarsest, counter)
+    if start:
+        solver = from_guess(coarsest, start, counter, tolerance)
+    else:
+        solver = _from_winkler(coarsest, counter, tolerance)
     while nested:
         solver.solve(coarse_tolerance(solver.problem.grid.shape), first_set(solver.problem))
         iterations[f"CG at {solver.whole.grid}"] = solver.cg_iterations
-        solver = from_guess(nested.pop(0), solver.initial_guess(), counter)
+        solver = from_guess(nested.pop(0), solver.initial_guess(), counter, tolerance)
     while True:
         result, window = solver.result(tolerance), solver.window
         too_small, needs_mixing = solver.window_too_small, solver.needs_mixing
@@ -55,7 +58,7 @@ def solve_fft(
             if not missed.any():
                 return replace(state, iterations={**state.iterations, **iterations})
             needed |= missed  # windows only grow, so the loop ends
-        solver = widened(problem, result, needed, counter, needs_mixing=needs_mixing)
+        solver = widened(problem, result, needed, counter, tolerance, needs_mixing=needs_mixing)
 
 
 def _misfit(problem: Problem, start: InitialGuess) -> float:
@@ -68,17 +71,17 @@ def _misfit(problem: Problem, start: InitialGuess) -> float:
     return max(gap, relative_gap(abs(inner(f, v) - total * (problem.approach or 0.0)), energy))
 
 
-def from_guess(problem: Problem, start: InitialGuess, counter: Counter) -> LevelSolver:
+def from_guess(problem: Problem, start: InitialGuess, counter: Counter, tolerance: float) -> LevelSolver:
     """Return the solver of a grid from an initial guess: its pressure, and the window of likely contact."""
     window, pressure, misfit, contact = _prolonged(problem, start)
-    operator, precondition = _operators(problem, window, counter)
+    operator, precondition = _operators(problem, window, counter, tolerance)
     loaded = problem.load is not None
     capped = likely_capped(pressure, misfit, contact, problem)
     pressure = sharpened(pressure, misfit, contact & ~capped, precondition, loaded=loaded)
     pressure[capped] = problem.cap
     # where the contact is likely the guess has no pressure: there is nothing to start from
     if loaded and not pressure.any():
-        return _from_winkler(problem, counter)
+        return _from_winkler(problem, counter, tolerance)
     precondition = extended(precondition, (pressure > 0) & ~capped)
     return LevelSolver(problem, operator, precondition, pressure, needs_mixing=start.needs_mixing)
 
@@ -95,15 +98,17 @@ def _prolonged(problem: Problem, start: InitialGuess) -> tuple[Window, Array, Ar
     return window, pressure[place].copy(), approach - v[place], contact[place].copy()
 
 
-def _operators(problem: Problem, window: Window, counter: Counter) -> tuple[WindowInfluence, Apply]:
+def _operators(
+    problem: Problem, window: Window, counter: Counter, tolerance: float
+) -> tuple[WindowInfluence, Apply]:
     """The influence of a window on itself, and its preconditioner."""
-    operator = window_influence(problem.grid, problem.direction, window, counter)
+    operator = window_influence(problem.grid, problem.direction, window, counter, tolerance)
     return operator, SpectralPreconditioner(operator, problem.elasticity.symbol(operator.symbol))
 
 
-def _from_winkler(problem: Problem, counter: Counter) -> LevelSolver:
+def _from_winkler(problem: Problem, counter: Counter, tolerance: float) -> LevelSolver:
     """The solver of a grid without an initial guess."""
-    operator, precondition = _operators(problem, problem.grid.window, counter)
+    operator, precondition = _operators(problem, problem.grid.window, counter, tolerance)
     return LevelSolver(problem, operator, precondition, winkler_pressure(problem))
 
 
@@ -128,12 +133,18 @@ def missed_by_window(problem: Problem, state: State, window: Window, tolerance: 
 
 
 def widened(
-    problem: Problem, result: SolverResult, needed: Mask, counter: Counter, *, needs_mixing: bool
+    problem: Problem,
+    result: SolverResult,
+    needed: Mask,
+    counter: Counter,
+    tolerance: float,
+    *,
+    needs_mixing: bool,
 ) -> LevelSolver:
     """Return a solver that starts from a result's pressure, on a window that holds all elements needed."""
     window = Window.around(needed, MARGIN).filling(problem.grid.shape)
     pressure = result.pressure[window.slices]
-    operator, precondition = _operators(problem, window, counter)
+    operator, precondition = _operators(problem, window, counter, tolerance)
     precondition = extended(precondition, pressure > 0)
     solver = LevelSolver(problem, operator, precondition, pressure, needs_mixing=needs_mixing)
     solver.cg_iterations = sum(result.iterations.values())

@@ -20,7 +20,8 @@ no curvature does.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from copy import copy
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -29,7 +30,7 @@ from refimpl.model.certificate import contact_residuals
 from refimpl.operators.preconditioner import Apply
 from refimpl.solvers.production.constants import CERTAINTY, FIRST_LENGTH, TRIAL_SHARE, TRUSTED, VANISHING
 from refimpl.solvers.production.contact_vectors import ContactVectors
-from refimpl.solvers.production.step_length import cut_at_zero, longest_step
+from refimpl.solvers.production.step_length import cut_at_zero, longest_step, step_share
 
 
 class Separation(NamedTuple):
@@ -69,6 +70,12 @@ class ProjectedCG:
         if target is not None:
             self._scale_to_target()
 
+    def copy(self) -> Self:
+        """Return CG with a state of its own; other arrays than these are replaced, never changed."""
+        other = copy(self)
+        other.normal_displacement, other.free = self.normal_displacement.copy(), self.free.copy()
+        return other
+
     @property
     def contact(self) -> Mask:
         """Elements that bear pressure; on the ``free`` ones pressures are still sought."""
@@ -97,7 +104,8 @@ class ProjectedCG:
                 v /= self._K
             on = self._vectors.gather_view(v)
             total = float(self._pressing.sum()) or 1.0  # 1 after a step that left no pressure
-            self._separation = Separation(v, on, inner(self._pressing, on) / total)
+            mean = inner(self._pressing, on) / total or inner(self._pressing / total, on)  # products vanish
+            self._separation = Separation(v, on, mean)
         return self._separation
 
     def residuals(self) -> tuple[float, float]:
@@ -107,18 +115,18 @@ class ProjectedCG:
         At a prescribed approach the first is at least the work done by the error of the mean separation.
         """
         (v, on, mean), approach = self._separate(), self.approach
-        lowest = float(v.min())
-        energy = 0.5 * inner(self._pressing, self._vectors.gather_view(self.normal_displacement))
-        gap = inner(self._pressing, on - lowest)
-        if self._approach is not None:
-            gap = max(gap, abs(mean - approach) * float(self._pressing.sum()))
-        pressing = self._pressing
+        lowest, pressing = float(v.min()), self._pressing
+        shares = pressing / (float(pressing.sum()) or 1.0)  # products of the least pressures would vanish
+        energy = 0.5 * inner(shares, self._vectors.gather_view(self.normal_displacement))
+        gap = inner(shares, on - lowest)
+        if self._approach is not None and pressing.any():
+            gap = max(gap, abs(mean - approach))
         rounding = self._rounding * float(pressing.max(initial=0.0))
-        return contact_residuals(gap, energy, approach, lowest, rounding, float(pressing.sum()))
+        return contact_residuals(gap, energy, approach, lowest, rounding)
 
     def undecided(self, stiffness: float, among: Mask | None = None) -> int:
-        """Return of how many elements, ``among`` these or all, the remaining error of the separation can
-        change the contact.
+        """Return the number of elements, ``among`` these or all, whose contact the remaining error of the
+        separation can change.
 
         ``stiffness`` is the pressure per displacement of a single element (Pa/m).
         """
@@ -209,8 +217,7 @@ class ProjectedCG:
             if not self._cut(trial, change):
                 return False
         moved = self._apply(self._vectors.scatter(change))  # [PK 4]
-        curvature = inner(change, self._vectors.gather_view(moved))
-        best = inner(residual, change) / curvature if curvature > 0 else 0.0
+        best = step_share(residual, change, self._vectors.gather_view(moved))
         self._take(max(best, 0.0), change, moved, cut)  # [PK 5, 6]
         self._length *= TRIAL_SHARE * best
         self._trusted = TRUSTED[0] < best < TRUSTED[1]
@@ -258,9 +265,9 @@ class ProjectedCG:
     def _step_then_cut(self, residual: Array, direction: Array) -> None:
         """Step by the exact length along the direction, then cut: two applications, without a trial."""
         moved = self._apply(self._vectors.scatter(direction))
-        curvature = inner(direction, self._vectors.gather_view(moved))
-        if curvature > 0:  # zero when the constraint alone fixes the set's pressure
-            self._length = inner(residual, direction) / curvature
+        length = step_share(residual, direction, self._vectors.gather_view(moved))
+        if length:  # zero when the constraint alone fixes the set's pressure
+            self._length = length
             self._pressing = self._pressing + self._length * direction
             self.normal_displacement = self.normal_displacement + self._length * moved
             self._trusted = True

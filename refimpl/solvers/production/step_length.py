@@ -8,6 +8,18 @@ from refimpl.grid import Array, inner
 from refimpl.solvers.production.constants import LOAD_SLACK
 
 
+def step_share(residual: Array, change: Array, moved: Array) -> float:
+    """Return the multiple of a change that minimises the energy; 0 where the change has none.
+
+    ``moved`` is the change's displacement. The least pressures are scaled: their products would vanish.
+    """
+    curvature = inner(change, moved)
+    if curvature == 0:
+        change = change / (float(np.abs(change).max()) or 1.0)
+        curvature = inner(change, moved)
+    return inner(residual, change) / curvature if curvature > 0 else 0.0
+
+
 def longest_step(pressure: Array, change: Array) -> float:
     """Return the multiple of a change at which the first pressure reaches zero."""
     falling = np.flatnonzero(change < 0)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from refimpl.accuracy.contact_edge import EDGE_SIZE
+from refimpl.accuracy.contact_edge import NO_FACES
 from refimpl.accuracy.discretisation_error import PEAK_BIAS
-from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.accuracy.grid_features import EXCESS, GridFeatures
 from refimpl.accuracy.peak import NO_PEAK, Peak
 from refimpl.grid import Grid
 from refimpl.model.forces import EDGE_SHARE
@@ -15,6 +15,9 @@ from refimpl.solution.quantities import REPORTED
 
 SIDE, RADIUS, DMU_DA = 1e-3, 2e-4, 4e4
 AREA_LIMIT, BETA, PEAK = math.pi * RADIUS**2, 0.1, 1e9
+
+KIND = 8  # of all faces of its edge: both ratios as of a ball's edge
+EDGE_SIZE = float(EXCESS[KIND]) / EDGE_SHARE  # mean excess over the edge
 
 
 def disc_peak(h: float) -> Peak:
@@ -48,6 +51,7 @@ def made_up(
         peak=disc_peak(h),
         first_contact=NO_PEAK,
         slope_sampling_error=slope_sampling_error,
+        faces=tuple(8 * RADIUS / h if k == KIND else 0.0 for k in range(len(NO_FACES))),
         dmu_dA=DMU_DA,
         parts={name: {"iteration": 0.0} for name in REPORTED},
     )

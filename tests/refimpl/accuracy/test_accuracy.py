@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.accuracy.contact_edge import EDGE_SIZE
 from refimpl.accuracy.iteration_error import CORRECTED, iteration_parts
 from refimpl.accuracy.refinement import FIRST_GRIDS
 from refimpl.solution.cost import total_cost
@@ -100,7 +99,7 @@ def test_one_grid_has_bars_of_its_own() -> None:
         assert abs(getattr(found, name) - getattr(finer, name)) <= bar, name
         assert finer.uncertainty[name]["discretisation"] < 0.4 * bar  # first order at least
     edge = found.contact_area - found.contact_area_corrected
-    assert EDGE_SIZE * edge < found.uncertainty["contact_area"]["discretisation"] < 2 * edge
+    assert edge < found.uncertainty["contact_area"]["discretisation"] < 2 * edge
     assert found.uncertainty["approach"]["iteration"] <= 1e-8 * found.approach
 
 

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from scipy import optimize, stats
 
 from refimpl.accuracy.bayesian_line import Bias, Estimate, Prior, fit_line
-from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD
 from refimpl.accuracy.digits import bar_of, digits_of, usable, verdict
 from refimpl.accuracy.discretisation_error import AREA
 from refimpl.grid import Array
@@ -82,8 +81,8 @@ def test_nine_nodes_do_for_the_factors_integral() -> None:
         weights, sizes = (spacing / spacing[-1]) ** 1.5, spacing * draw.uniform(0.02, 0.3)
         prior = AREA._replace(scatter=0.2 * draw.uniform(0.01, 0.05))
         scatter = prior.scatter * weights * draw.standard_normal(len(spacing))
-        bias = Bias(sizes, EDGE_SIZE, EDGE_SIZE_SPREAD)
-        values = 1 + sizes * draw.normal(EDGE_SIZE, EDGE_SIZE_SPREAD) + scatter
+        bias = Bias(sizes, 0.72, 0.03)
+        values = 1 + sizes * draw.normal(0.72, 0.03) + scatter
         found = fit_line(values, weights, prior, bias)
         value, bound = integrated(values, weights, prior, bias)
         off.append((abs(found.value - value) / bound, abs(found.half_width / bound - 1)))

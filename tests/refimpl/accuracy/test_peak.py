@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import refimpl as rf
 from refimpl.accuracy import discretisation_error
-from refimpl.accuracy.discretisation_error import OTHER, PEAK_BIAS, PEAK_BIAS_SPREAD, estimates
+from refimpl.accuracy.discretisation_error import APPROACH_SCATTER, PEAK_BIAS, PEAK_BIAS_SPREAD, estimates
 from refimpl.accuracy.peak import NO_PEAK, Peak, deepest
 from refimpl.accuracy.peak import highest as highest_on
 from refimpl.grid import Array, Grid
@@ -153,7 +153,7 @@ def test_a_peak_that_stands_alone_is_not_bounded(non_parabolicity: float, more: 
         assert uneven[name].half_width == even[name].half_width
     assert uneven["approach"].half_width == pytest.approx(math.sqrt(more) * even["approach"].half_width)
     of_parabola, found = (found["max_pressure"].half_width for found in (even, uneven))
-    assert of_parabola > 1.96 * math.hypot(0.1 * PEAK_BIAS_SPREAD, 0.1 * discretisation_error.PEAK.scatter)
+    assert of_parabola > 1.96 * math.hypot(0.1 * PEAK_BIAS_SPREAD, 0.1 * discretisation_error.PEAK_SCATTER[0])
     assert found <= more * of_parabola
     assert (found > of_parabola) is (more > 1)
     assert math.isinf(found) is math.isinf(more)
@@ -181,6 +181,6 @@ def test_a_first_touch_that_is_not_resolved_leaves_the_approach_open() -> None:
     steep = [replace(made_up(64), first_contact=Peak(0.0, 1e-7, rough)) for rough in (0.0, 0.6, 1.0)]
     bounds = [estimates([result])["approach"].half_width for result in (made_up(64), *steep)]
     assert bounds == sorted(bounds)
-    edge = OTHER.scatter * (made_up(64).edge / made_up(64).numbers["contact_area"]) ** 1.5 * 1e-6
-    assert bounds[1] == pytest.approx(bounds[0] / edge * math.hypot(edge, 0.02 * 1e-7))
+    edge = APPROACH_SCATTER[0] * (made_up(64).edge / made_up(64).numbers["contact_area"]) ** 1.5 * 1e-6
+    assert bounds[1] == pytest.approx(bounds[0] / edge * math.hypot(edge, APPROACH_SCATTER[4] * 0.02 * 1e-7))
     assert math.isinf(bounds[-1])

@@ -135,7 +135,7 @@ def test_an_interrupt_has_the_last_finished_grid_with_its_own_bars() -> None:
         assert len(caught.value.args) == (stop == "next")
     (found,) = caught.value.args
     assert (found.grid.shape, found.status) == ((32, 26), rf.Status.ACCURACY_NOT_REACHED)
-    assert found.warnings[-1] == "interrupted: the finest grid that was finished"
+    assert "interrupted: the finest grid that was finished" in found.warnings
     assert found.error("contact_area") > 0
     assert shown[-2] == f"32 x 26 elements, {sum(found.cost.applications.values())} transforms"
     memory = found.plan.on(rf.Grid((64, 52), (1e-3, 0.8e-3))).memory / 1e9

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import refimpl as rf
 from refimpl.driver.reference import solve_reference
+from refimpl.model import certificate
+from refimpl.model.forces import Forces
 from refimpl.model.problem import Terms
 from refimpl.scene.discretise import discretise
 
@@ -87,6 +90,25 @@ def test_a_rigid_body_takes_both_terms_or_neither() -> None:
     rigid = replace(scene, upper=rf.Body(rf.Material(float("inf"), 0.3), rf.Flat()))
     with pytest.raises(rf.InputError, match="tilted = False"):
         rf.solve(rigid, 5, method="dense", coupled=True, tilted=False, oblique=True)
+
+
+def test_the_reference_reports_its_own_sums(monkeypatch: pytest.MonkeyPatch) -> None:
+    """F of the certificate 1 % too large moves no number of method dense, and is one of its residuals."""
+    scene = rough(rf.Material(1e9, 0.2), 2e-5, 3.0, seed=5)
+    before = rf.solve(scene, 5, method="dense")
+    assert before.certificate.reference < 1e-12
+    sums = certificate.resultants
+
+    def wrong(*given: Any) -> Forces:
+        forces = sums(*given)
+        return forces._replace(friction=1.01 * forces.friction)
+
+    monkeypatch.setattr(certificate, "resultants", wrong)
+    after = rf.solve(scene, 5, method="dense")
+    assert after.friction_force == before.friction_force
+    assert after.friction_coefficient == before.friction_coefficient
+    assert after.certificate.reference > 1e-4
+    assert after.status is rf.Status.STAGNATED
 
 
 def test_a_grid_beyond_the_page_is_refused() -> None:

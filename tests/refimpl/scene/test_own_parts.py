@@ -18,6 +18,7 @@ from refimpl.identification.data_table import Row
 from refimpl.identification.identify import identify
 from refimpl.scene.parameters import parameters
 from refimpl.sensitivities.budget import budget
+from refimpl.solution.quantities import QUANTITIES
 
 SIZE = (1.2e-3, 0.9e-3)
 SOFT, HARD = rf.Material(E=2.5e9, nu=0.2), rf.Material(E=200e9, nu=0.3)
@@ -51,6 +52,22 @@ class Limited:
 
     def shear_offset(self, pressure: Array, active: Mask) -> Array:
         return self.traction(pressure, active) - self.slope * pressure
+
+
+@dataclass(frozen=True)
+class Power:
+    """``r = tau + factor f^power``, without a part that is linear: tau in Pa, factor in Pa^(1 - power)."""
+
+    jump: float
+    factor: float
+    power: float
+    slope = 0.0
+    is_linear = False
+
+    def traction(self, pressure: Array, active: Mask) -> Array:
+        return np.where(active, self.jump + self.factor * pressure**self.power, 0.0)
+
+    shear_offset = traction
 
 
 def scene(law: Any = rf.Friction(tau=0.3e6, beta=0.2), **more: Any) -> rf.Scene:  # noqa: B008  # immutable
@@ -88,6 +105,39 @@ def test_a_law_with_a_limit_is_solved_corrected_and_summarised() -> None:
     assert (
         json.loads(json.dumps(s.summary(), allow_nan=False))["friction_coefficient"] == s.friction_coefficient
     )
+
+
+FRICTION = tuple(name for name in QUANTITIES if name.startswith("friction"))
+
+
+@pytest.mark.parametrize(
+    "law",
+    [Power(0.0, 300.0, 0.5), Power(0.0, 30.0, 2 / 3), Power(0.3e6, 1e-7, 2.0), Limited(limit=1.2e6)],
+    ids=["root", "two thirds", "rise", "limit"],
+)
+def test_a_law_that_is_not_linear_has_no_error_bar_of_friction_and_is_named(law: Any) -> None:
+    s, name = solve(scene(law), grid=32), type(law).__name__
+    assert len(FRICTION) == 4
+    assert [s.error(number) for number in FRICTION] == [None] * 4
+    assert [s.summary()["error"][number] for number in FRICTION] == [None] * 4
+    assert 0 < s.error("contact_area") < s.contact_area
+    assert [line for line in s.warnings if name in line and "mu and F" in line]
+    with pytest.raises(InputError, match=f"quantity.*contact_area.*{name}"):
+        solve(scene(law), accuracy=0.05)
+    assert solve(scene(law), accuracy=0.3, quantity="contact_area").converged
+
+
+def test_a_linear_law_of_another_form_has_the_bars_of_the_papers() -> None:
+    """As at a sliding velocity whose logarithm raises both tau and beta."""
+
+    class AtVelocity(Limited):
+        is_linear = True
+
+    papers, own = (
+        solve(scene(law), grid=32)
+        for law in (rf.Friction(0.33e6, 0.22), AtVelocity(1.1 * 0.3e6, 1.1 * 0.2))
+    )
+    assert [own.error(name) for name in FRICTION] == pytest.approx([papers.error(n) for n in FRICTION])
 
 
 def test_a_law_that_is_not_linear_has_no_derivatives_and_a_linear_one_has() -> None:

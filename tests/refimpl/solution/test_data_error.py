@@ -120,7 +120,6 @@ def test_shares_of_every_number(approach: float | None) -> None:
     expected = {
         "friction_coefficient": share * sheared / state.forces.normal,
         "contact_area": share * state.contact_area,
-        "contact_area_corrected": share * state.contact_area_corrected,
         "max_pressure": 2 * share * state.pressure.max(),
         "friction_force": share * sheared,
         "approach": share * state.approach,

@@ -23,7 +23,7 @@ from verification.cli import main, parser, solve, verify
 from verification.cli.output import StatusLine, judgement
 from verification.framework import registry, runner
 from verification.framework.case import Case, Measured, Metric, Status, Tier
-from verification.framework.text_table import WIDTH, columns
+from verification.output.text_table import WIDTH, columns
 
 QUICK = "kernels/love-at-centre"
 

@@ -23,7 +23,7 @@ from tests.reports import sample
 from tests.verification.cli.children import LONG, Ended, forked, one_line, started
 from tests.verification.cli.commands import run
 from verification.cli import main, solve
-from verification.framework import files
+from verification.output import files
 
 resource = pytest.importorskip("resource", reason="signals and limits of POSIX")
 START = (
@@ -146,7 +146,7 @@ def test_a_folder_that_refuses(
         raise OSError(errno.EROFS, os.strerror(errno.EROFS), str(tmp_path))
 
     def turns(*_: object, **__: object) -> None:  # read-only once the solve has begun
-        monkeypatch.setattr(files, "_remove_left", refuses)
+        monkeypatch.setattr(files, "_temporary", refuses)
 
     monkeypatch.setattr(solve, "check_suffix", turns)
     late = run(f"solve hertz --grid 8 --json {tmp_path}/s.json")

@@ -306,3 +306,20 @@ def test_hertz_of_a_ball_in_a_cup_and_of_no_ball() -> None:
     assert found.radius == pytest.approx(0.2)  # 1/R = 1/0.1 - 1/0.2: the cup curves the same way
     for without in (scene(flat, flat), scene(cup, ball), scene(ball, flat, periodic=True)):
         assert hertz_of(without, load=1.0) is None
+
+
+def test_warnings_are_printed_before_notes_and_notes_take_a_line_each(
+    folder: Path,
+) -> None:
+    """A copper flat that yields, under a ball without a hardness: the notes of yield and input follow."""
+    scene = rf.read_scene("scene.toml")
+    copper = rf.Material(118e9, 0.34, hardness=50e6)
+    rough = rf.GaussianRoughness(rms=0.2e-6, correlation_length=30e-6, seed=1)
+    hard = dataclasses.replace(scene, lower=rf.Body(copper, rough))
+    Path("hard.toml").write_text(rf.scene_to_toml(hard), encoding="utf-8")
+    printed = run("solve hard.toml --grid 16").out
+    found = re.findall(r"^(warning|note)\b", printed, flags=re.M)
+    assert {"warning", "note"} == set(found)
+    assert found == sorted(found, reverse=True)
+    assert "\n\n" not in printed[printed.index("\nnote: ") :].strip()
+    assert "at the hardness" in printed.partition("\nnote: ")[2].partition("\n")[0]

@@ -9,7 +9,6 @@ from typing import Any
 import pytest
 
 from refimpl import Scene
-from reports.result_files import committed
 from verification.coverage import synthetic_tables
 from verification.coverage.identification import BIAS, LEVEL, SETS, TableSet, fitted, study, summary
 from verification.coverage.synthetic_tables import (
@@ -20,6 +19,7 @@ from verification.coverage.synthetic_tables import (
     drawn_table,
     sharp_table,
 )
+from verification.output.result_files import committed
 
 ROW: dict[str, Any] = dict.fromkeys(("tau", "beta", "mu"), True) | {
     "kind": "ball", "grid": 64, "error": "noise", "tau_half_width": 0.1, "tau_error": -0.02,

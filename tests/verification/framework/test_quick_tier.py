@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import groupby
 
 import pytest
+from _pytest.mark import ParameterSet
 
 from verification.framework import registry
 from verification.framework.case import Case, Status, Tier
@@ -12,8 +13,16 @@ from verification.framework.case import Case, Status, Tier
 QUICK = registry.select(registry.load(), Tier.QUICK)
 BY_MODULE = {name: list(cases) for name, cases in groupby(QUICK, key=lambda case: case.module)}
 
+LONG = {"beyond_yield": 16, "capped_sphere": 14, "scheme": 13, "wedge": 10, "cross_check": 6}
+"""Modules that `make nightly` and `make report` run, with their seconds; their subjects have other tests."""
 
-@pytest.mark.parametrize("cases", BY_MODULE.values(), ids=[name.rpartition(".")[2] for name in BY_MODULE])
+
+def _marked(module: str, cases: list[Case]) -> ParameterSet:
+    name = module.rpartition(".")[2]
+    return pytest.param(cases, id=name, marks=[pytest.mark.nightly] if name in LONG else [])
+
+
+@pytest.mark.parametrize("cases", [_marked(module, cases) for module, cases in BY_MODULE.items()])
 def test_the_cases_of_a_module_pass(cases: list[Case]) -> None:
     """In one process and in their order, for they share solutions; all of them, whichever fails."""
     results = [case.run() for case in cases]

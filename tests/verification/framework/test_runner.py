@@ -12,8 +12,9 @@ from typing import Any
 
 import pytest
 
-from verification.framework import files, provenance, runner, workers
+from verification.framework import runner, workers
 from verification.framework.case import Case, Measured, Metric, Result, Status, Tier
+from verification.output import files, provenance
 
 Make = Callable[..., str]
 

@@ -13,9 +13,9 @@ from typing import Any
 import pytest
 
 import refimpl as rf
-from reports.result_files import read_result
 from tests.changed import changed
 from tests.layers import ROOT
+from verification.output.result_files import read_result
 from verification.properties import INVARIANTS, check_solver, nightly
 from verification.properties.__main__ import main
 from verification.properties.nightly import SOLVERS

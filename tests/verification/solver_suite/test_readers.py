@@ -18,6 +18,7 @@ from verification.cli import main
 from verification.solver_suite.reference import agreement
 
 FILES = {b.file: b.text for b in blocks((ROOT / "docs/reference-data.md").read_text("utf-8")) if b.file}
+FILES |= {path.name: path.read_text("utf-8") for path in (ROOT / "examples/readers").iterdir()}
 CALLS = {
     "reader.py": [[sys.executable, "reader.py", "data", "{name}"]],
     "reader.c": [

@@ -13,7 +13,7 @@ import pytest
 
 from tests.documents import ROOT
 from verification.cli import main, suite_table
-from verification.framework.provenance import versions
+from verification.output.provenance import versions
 from verification.solver_suite import identity
 from verification.solver_suite.suite import VERSION, suite
 from verification.solver_suite.suite import identity as of_suite

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from reports.result_files import read_result
 from verification.benchmarks import overhead, rounds
 from verification.benchmarks.__main__ import main
 from verification.benchmarks.codes import ALONE, OWN, SHEARED, SLOPED, codes
@@ -18,6 +17,7 @@ from verification.benchmarks.problems import problem
 from verification.benchmarks.rounds import Failed, Turns, in_turns, tuned, tuned_turns
 from verification.benchmarks.summary import ratios
 from verification.benchmarks.timed import residuals_of
+from verification.output.result_files import read_result
 from verification.solver_suite import own, reference_solution
 
 

@@ -10,10 +10,10 @@ import pytest
 from scipy.integrate import dblquad
 
 import refimpl as rf
-from reports.result_files import committed
 from verification.cases.appendix_a.fem3d_answer import STEEPEST
 from verification.cases.paper.contact import FIG6_TOLERANCE
 from verification.framework import registry
+from verification.output.result_files import committed
 from verification.reproduction import ensemble, fig6, fig8, slides, table3
 from verification.reproduction.printed import FIG6_RMS, MESHES, SIDE, TABLE2, TABLE3
 from verification.reproduction.table1 import SMOOTH, hertz, rough
@@ -176,13 +176,22 @@ def test_the_mean_slope_is_the_first_harmonic_and_nothing_else() -> None:
 
 
 def test_levels_of_the_effective_pressure() -> None:
-    profile = fig6.effective_pressure(0.511e-6, 2, 64)
-    rings = np.pi * fig6.BIN**2 * (2 * np.arange(len(profile.r)) + 1)
-    assert float(np.sum(rings * profile.hertz)) == pytest.approx(70.0, rel=1e-12)
-    assert float(np.sum(rings * profile.greenwood_tripp)) == pytest.approx(70.0, rel=0.02)
-    assert profile.central(profile.hertz) == 1.0
-    area = np.average((profile.hertz - profile.greenwood_tripp) ** 2, weights=profile.r)
+    profile = fig6.effective_pressure(0.511e-6, 0, 2, 64)
+    assert profile.load_share(profile.hertz) == pytest.approx(1.0, rel=0.02)
+    assert profile.load_share(profile.greenwood_tripp) == pytest.approx(1.0, rel=0.02)
+    area = np.mean((profile.hertz - profile.greenwood_tripp) ** 2)
     assert profile.without_roughness == pytest.approx(np.sqrt(area) / hertz().peak_pressure, rel=1e-12)
+
+
+def test_an_interval_of_rare_contact_ends_at_zero_and_of_many_values_is_the_normal_one() -> None:
+    rng = np.random.default_rng(1)
+    rare, many = np.zeros((75, 1)), rng.normal(5.0, 1.0, (400, 1))
+    rare[:3] = 1.0
+    low, high = fig6.interval(rare)
+    assert low[0] == 0.0 < high[0] < 0.15
+    low, high = fig6.interval(many)
+    half = 1.96 * many.std(ddof=1) / 20
+    assert (low[0], high[0]) == pytest.approx((many.mean() - half, many.mean() + half), abs=0.1 * half)
 
 
 def test_a_cell_compares_ours_with_print() -> None:
@@ -208,5 +217,5 @@ def test_numbers_that_one_case_takes_from_another_are_those_of_the_committed_run
 def test_half_of_the_summit_models_pressure_is_beyond_what_fig_6_lets_pass() -> None:
     """As its tolerance says: with the panels' own pressures, on rings that need no contact."""
     for panel, rms in zip("bc", FIG6_RMS[1:], strict=True):
-        profile = fig6.effective_pressure(rms, 2, 64)
+        profile = fig6.effective_pressure(rms, 0, 2, 64)
         assert profile.misfit_of_half / profile.without_roughness > FIG6_TOLERANCE[panel]["full"]

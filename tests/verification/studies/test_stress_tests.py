@@ -13,10 +13,10 @@ import pytest
 
 import refimpl as rf
 from refimpl.operators.fft import FFTInfluence
-from reports.result_files import committed, read_result
 from tests.changed import changed
 from verification.cases.solvers.stress_tests import counted
 from verification.exact.dense_influence import DenseInfluence
+from verification.output.result_files import committed, read_result
 from verification.scenes.cross_checks import POLYMER, pressed
 from verification.stress_tests import (
     conditioning,

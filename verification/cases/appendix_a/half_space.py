@@ -25,6 +25,7 @@ from verification.cases.appendix_a.undeformed_study import (
 
 COUNT = 56  # contacts judged in the plane
 WAVE_SLOPES = (1.0, 2.5, 4.0, 6.5, 10.0, 15.0, 20.0)  # degrees, drawn by examples/half_space_wave.py
+WAVE_QUANTITIES = {"approach": "approach under the load", "normal_force": "N at the approach"}
 PARTS = {
     "true": "finite elements over half-space - 1",
     "first_order": "first order",
@@ -136,30 +137,24 @@ def elastic_wave(slope_deg: float) -> Profiles:
     return Profiles("crest on flat", slopes, 0.0, (), *bodies, share=0.3, tau=0.0, beta=0.0)
 
 
-@case("model-form/half-space-wave", metric="at_most", tolerance=0.3, tier="full", source=SOURCE)
+@case("model-form/half-space-wave", metric="at_most", tolerance=1.0, tier="full", source=SOURCE)
 def wave() -> Measured:
     """An elastic wave under a rigid plane: slopes vanish in contact, and the half-space is off.
 
-    Claim: The half-space's approach is 7.8 % too small at 15 degrees; its N at the approach is 16.6 % too
-    large there and 7.2 % at 6.5 degrees; both are stated, and the solution warns
-    Tolerance: percentage points between these numbers and those found independently: other meshes and grids
+    Claim: What is stated of the approach and of N at the approach holds from 1 to 20 degrees, and the
+    solution warns from 6.5 degrees
+    Tolerance: largest true error over the stated one
     """
     waves = {slope: judged(elastic_wave(slope)) for slope in WAVE_SLOPES}
     data: dict[str, object] = {"slope (degrees)": list(WAVE_SLOPES)}
-    for name, shown in (("approach", "approach under the load"), ("normal_force", "N at the approach")):
+    for name, shown in WAVE_QUANTITIES.items():
         for slope, one in waves.items():
-            if abs(one.true[name]) > one.stated[name] or (not one.warned and slope >= 6.5):
-                raise ArithmeticError(f"at {slope} degrees: {name} beyond what is stated, or no warning")
+            if not one.warned and slope >= 6.5:
+                raise ArithmeticError(f"at {slope} degrees: no warning")
         for part, label in PARTS.items():
             data[f"{shown}: {label} (%)"] = [100 * getattr(one, part)[name] for one in waves.values()]
-    steep, paper = waves[15.0], waves[6.5]
-    found = {
-        "approach at 15 degrees": (100 - 100 / (1 + steep.true["approach"]), 7.8),
-        "N at 15 degrees": (100 * (1 / (1 + steep.true["normal_force"]) - 1), 16.6),
-        "N at 6.5 degrees": (100 * (1 / (1 + paper.true["normal_force"]) - 1), 7.2),
-    }
-    data |= {name: list(pair) for name, pair in found.items()}
-    return Measured(max(abs(a - b) for a, b in found.values()), unit="percentage points", data=data)
+    ratios = [abs(one.true[name]) / one.stated[name] for one in waves.values() for name in WAVE_QUANTITIES]
+    return Measured(max(ratios), data=data)
 
 
 @case("model-form/half-space-crests", metric="at_most", tolerance=3.0, tier="full", source=SOURCE)
@@ -193,19 +188,18 @@ def strain() -> Measured:
     return Measured(max(shares.values()), data={"share of the first order": shares})
 
 
-@case("model-form/space-over-plane", metric="at_most", tolerance=0.06)
+@case("model-form/space-over-plane", metric="at_most", tolerance=0.01)
 def space_over_plane() -> Measured:
     """Coefficients in line with a slope: three dimensions against the plane.
 
-    Claim: nu 0 at 10 degrees 12.7 against 8.8 %, nu 0.3 at 6.5 degrees 4.15 against 3.30 %, steel on copper
+    Claim: nu 0 at 10 degrees 12.66 against 8.79 %, nu 0.3 at 6.5 degrees 4.15 against 3.30 %, steel on copper
     at 10 degrees 2.58 against 1.74 %
     Source: refimpl.half_space.influence_error_3d and influence_error, both tables by finite elements
-    Tolerance: percentage points: half of the last digit of the numbers found independently, and the tables'
-    stated errors
+    Tolerance: recorded with these tables: percentage points, half of the last digit
     """
     copper, steel = Material(118e9, 0.3), Material(200e9, 0.3)
     rows = (
-        ("nu 0, 10 degrees", 10.0, (Material(1e9, 0.0),), (12.7, 8.8)),
+        ("nu 0, 10 degrees", 10.0, (Material(1e9, 0.0),), (12.66, 8.79)),
         ("nu 0.3, 6.5 degrees", 6.5, (copper,), (4.15, 3.30)),
         ("steel on copper, 10 degrees", 10.0, (copper, steel), (2.58, 1.74)),
     )

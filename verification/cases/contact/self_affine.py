@@ -171,7 +171,7 @@ def kappa_range() -> Measured:
     return Measured(float(off.max()), data=figure_data(found), note=note)
 
 
-@case("reference/self-affine-spectral-breadth", metric="at_least", tolerance=3.0)
+@case("reference/self-affine-spectral-breadth", metric="at_least", tolerance=3.0, tier="full")
 def spectral_breadth() -> Measured:
     """Self-affine surfaces: the broader the spectrum, the smaller the area.
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 import refimpl as rf
-from refimpl.accuracy.contact_edge import EDGE_SIZE, EDGE_SIZE_SPREAD
+from refimpl.accuracy.discretisation_error import EXCESS_SPREAD
 from refimpl.solution.quantities import error_bound
 from verification.cases import Measured, case
 from verification.cases.contact import hertz
@@ -89,16 +89,16 @@ def hertz_peaks() -> Measured:
 def edge_size() -> Measured:
     """Area that whole elements add along the edge of the Hertz contact.
 
-    Claim: the area that the edge's elements add, over the perimeter correction, is as the bars' prior says
-    Source: Hertz 1882; Yastrebov, Anciaux and Molinari 2017; `the prior by likelihood of 200 random scenes
+    Claim: the area that the edge's elements add, over what the edge rule subtracts, is as their prior says
+    Source: Hertz 1882; the prior by likelihood of the building scenes of `verification.coverage.fit`
     Tolerance: two standard deviations of the prior, fitted to scenes of which few are discs
     """
     sizes = {}
     for M, shifts in ((128, 8), (256, 8)):
         raw, corrected = mean_radii(M, shifts)
         sizes[M] = (raw**2 - hertz.EXACT.contact_radius**2) / (raw**2 - corrected**2)
-    off = [abs(size - EDGE_SIZE) / EDGE_SIZE_SPREAD for size in sizes.values()]
-    note = f"{sizes[128]:.3f} at 128 and {sizes[256]:.3f} at 256, prior {EDGE_SIZE} +- {EDGE_SIZE_SPREAD}"
+    off = [abs(size - 1) / EXCESS_SPREAD for size in sizes.values()]
+    note = f"{sizes[128]:.3f} at 128 and {sizes[256]:.3f} at 256, prior 1 +- {EXCESS_SPREAD}"
     return Measured(value=max(off), data={"size": sizes}, note=f"mean of 64 positions of the axis: {note}")
 
 

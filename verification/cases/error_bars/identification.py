@@ -71,7 +71,7 @@ def some(tables: str) -> Measured:
     return _coverage(SETS[tables], SETS[tables].seeds[:: 7 if tables == "drawn" else 3])
 
 
-@case("identification/effects", metric="at_most", tolerance=0.01)
+@case("identification/effects", metric="at_most", tolerance=0.01, tier="full")
 def effects() -> Measured:
     """Wrong surface, wrong modulus and an outlier in an identification.
 
@@ -103,7 +103,7 @@ def effects() -> Measured:
     return Measured(value=value, data=data, note=f"rows named as outliers: {[k + 1 for k in named]}")
 
 
-@case("identification/solves", metric="at_most", tolerance=MOST_SOLVES)
+@case("identification/solves", metric="at_most", tolerance=MOST_SOLVES, tier="full")
 def solves() -> Measured:
     """Forward solves of a fit to eight loads on 256 x 256, with friction and slopes.
 

@@ -118,7 +118,7 @@ def scatter(tier: str) -> Measured:
         "printed A": AREA_FLUCTUATION,
         "printed mu": FRICTION_FLUCTUATION,
     }
-    return judged(Verdict.CONDITIONAL if both else Verdict.REFUTED, sentence, worst, data=data)
+    return judged(Verdict.CONDITIONAL if any(met[1]) else Verdict.REFUTED, sentence, worst, data=data)
 
 
 @in_both_tiers(

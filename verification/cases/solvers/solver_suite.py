@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 
 from verification.cases import Measured, case, family
@@ -23,14 +24,25 @@ def verdicts(fault: Fault) -> dict[str, str]:
     return {r.id.partition("/")[2]: r.status for r in run(FAULTY[fault](), NAMED)}
 
 
-@case("solver_suite/own-solver", metric="equal", tolerance=0.0, source=SOURCE)
-def own_solver() -> Measured:
+DESIGNS = tuple(c.id for c in suite() if re.search(r"/design-(large|(?!tiny).*[1-9]$)", c.id))
+"""Covering designs but for tiny problems and every tenth of the others: nine tenths of the suite's time."""
+
+
+@family(
+    "cases, tier",
+    {
+        "solver_suite/own-solver": (tuple(c.id for c in suite() if c.id not in DESIGNS), "quick"),
+        "solver_suite/own-solver-designs": (DESIGNS, "full"),
+    },
+    metric="equal", tolerance=0.0, source=SOURCE,
+)  # fmt: skip
+def own_solver(cases: tuple[str, ...]) -> Measured:
     """The project's own solver through the suite for other solvers.
 
-    Claim: refimpl's production solver passes every case that other solvers are put to
+    Claim: refimpl's production solver passes every case that other solvers are put to, in two parts
     Tolerance: a number of cases
     """
-    results = run(own.solve)
+    results = run(own.solve, cases)
     left = [f"{r.id}: {r.status} {r.note}" for r in results if r.status != "pass"]
     data = {"error over tolerance": {r.id: (r.error or 0.0) / (r.tolerance or 1.0) for r in results}}
     return Measured(len(left), 0.0, unit="cases", data=data, note="; ".join(left) or f"{len(results)} cases")

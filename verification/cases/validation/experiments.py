@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from reports.result_files import committed
 from verification.cases import Measured, family
 from verification.experiments.comparison import Point
 from verification.experiments.predictions import points
 from verification.framework.case import Disproved
+from verification.output.result_files import committed
 
 SAME = 1e-3
 """Largest change of a committed number over U_val: a prediction of the same inputs, not of others."""

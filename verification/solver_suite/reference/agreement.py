@@ -18,7 +18,7 @@ import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
-from reports.result_files import parsed
+from verification.output.result_files import parsed
 from verification.solver_suite.protocol import ContactProblem, Coupling
 from verification.solver_suite.reference.certified import CONTACT, NotCertified, certified
 from verification.solver_suite.reference.files import FORMAT, INDEX, SUMS, checksums

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from refimpl.errors import InputError
-from verification.framework.provenance import DISTRIBUTION, ROOT, versions
+from verification.output.provenance import DISTRIBUTION, ROOT, versions
 from verification.solver_suite import suite
 from verification.solver_suite.command import header_of
 from verification.solver_suite.reference import certified

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
+import mpmath as mp
 import numpy as np
 from skfem import MeshTri
 
@@ -62,7 +63,9 @@ def _limits(gamma: float, theta: float, r: float) -> Array:
     """r -> 0: -1 all round. r -> infinity: the resultant's radial field (Michell 1900)."""
     if r < 1:
         return np.array([-1.0, -1.0, 0.0])
-    radial = -4 * math.cos(gamma) * math.cos(theta) / (math.pi - 2 * gamma + math.sin(2 * gamma))
+    with mp.workdps(40):  # doubles leave 8 digits of the opening of the narrowest wedge
+        alpha = mp.pi / 2 - mp.mpf(gamma)
+        radial = float(-4 * mp.sin(alpha) * mp.cos(theta) / (2 * alpha + mp.sin(2 * alpha)))
     return np.array([radial / r, 0.0, 0.0])
 
 

@@ -80,7 +80,7 @@ def test_a_window_that_is_too_small_is_widened_no_further_than_needed() -> None:
             break
         assert not missed[solver.window.interior(shape).slices].any()
         steps, needed = solver.cg_iterations, missed | solver.window.mask(shape)
-        solver = widened(problem, result, needed, Counter(), needs_mixing=solver.needs_mixing)
+        solver = widened(problem, result, needed, Counter(), tolerance, needs_mixing=solver.needs_mixing)
         assert solver.cg_iterations == steps
     assert np.abs(result.pressure - expected).max() <= 1e-6 * expected.max()
     assert solver.window.shape < shape
@@ -145,7 +145,7 @@ def solved(problem: Problem, tolerance: float, window: Window | None = None) -> 
 
 
 def continued(solver: LevelSolver, finer: Problem) -> LevelSolver:
-    return from_guess(finer, solver.initial_guess(), Counter())
+    return from_guess(finer, solver.initial_guess(), Counter(), 1e-8)
 
 
 @pytest.mark.parametrize("approach", [None, 1e-6])

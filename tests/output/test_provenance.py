@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from verification.framework import provenance
+from verification.output import provenance
 
 
 def test_provenance_that_cannot_be_had_is_null(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,22 +1,23 @@
 """Result files: JSON documents, which the repository keeps compressed with gzip as ``NAME.json.gz``.
 
 `read_result` reads both forms; `write_result` compresses where the path ends in ``.gz``. The same document
-gives the same bytes. ``python -m reports.result_files FILE.json`` compresses a plain file before it is
-committed.
+gives the same bytes. ``python -m verification.output.result_files FILE.json`` compresses a plain file
+before it is committed.
 """
 
 from __future__ import annotations
 
 import gzip
 import json
-import os
 import sys
 import zlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-FOLDER = Path(__file__).with_name("results")
+from verification.output.files import replacing
+
+FOLDER = Path(__file__).parents[2] / "reports" / "results"
 """The committed result files."""
 SUFFIX = ".json.gz"
 _MAGIC = b"\x1f\x8b"  # first bytes of a gzip file (RFC 1952)
@@ -119,9 +120,8 @@ def encoded(document: object, path: Path) -> bytes:
 def write_result(document: object, path: Path) -> None:
     """Write the document in one step; raises ValueError as `encoded` does."""
     content = encoded(document, path)
-    temporary = path.with_name(f".{path.name}.new")
-    temporary.write_bytes(content)
-    os.replace(temporary, path)
+    with replacing(path) as temporary:
+        temporary.write_bytes(content)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

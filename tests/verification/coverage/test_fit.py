@@ -1,0 +1,59 @@
+"""The fit of the error bars' constants: known scales are found, features are stored, constants come again."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import refimpl as rf
+from tests.refimpl.accuracy.made_up import made_up
+from verification.coverage import fit
+from verification.coverage.building import Solved, as_corrected, exact_numbers, pack, unpacked
+from verification.coverage.class_scenes import CLASSES, scene
+from verification.coverage.likelihood import fit as likeliest
+
+
+def test_mean_and_scales_that_errors_were_drawn_with_are_found() -> None:
+    draw = np.random.default_rng(4)
+    means, squares = draw.uniform(0, 1, (4000, 1)), draw.uniform(0, 1, (4000, 2))
+    errors = 0.3 * means[:, 0] + np.sqrt(squares @ [0.04, 0.25]) * draw.standard_t(4, 4000)
+    found = likeliest(errors, means, squares, freedoms=[2.0, 4.0, 10.0])
+    assert found.freedom == 4.0
+    assert abs(found.mean[0] - 0.3) < 3 * found.mean_error[0] < 0.1
+    assert np.all(np.abs(found.scale - [0.2, 0.5]) < 3 * found.scale_error)
+
+
+def test_a_rounded_punch_has_the_area_of_its_closed_form() -> None:
+    """Within the counted edge: a tenth of an element of 32 per face."""
+    one = scene("rounded punches", 3)
+    solved, exact = rf.solve(one, grid=128), exact_numbers(one)
+    assert solved.contact_area_corrected == pytest.approx(exact["contact_area"], rel=0.02)
+    assert solved.friction_coefficient_corrected == pytest.approx(exact["friction_coefficient"], rel=0.02)
+    assert exact_numbers(scene("pads", 3)) == {}
+
+
+def test_stored_features_give_the_same_excess_and_bars(tmp_path: Path) -> None:
+    grids = tuple(as_corrected(made_up(M)) for M in (48, 64, 96, 512))
+    pack([Solved("few elements", 1, grids, {})], tmp_path / "f.json.gz")
+    (found,) = unpacked(tmp_path / "f.json.gz")
+    assert [max(grid.grid.shape) for grid in found.grids] == [64, 512]  # every second one, and the reference
+    for stored, grid in zip(found.grids, grids[1::2], strict=True):
+        assert stored.excess == pytest.approx(grid.excess, rel=1e-4)
+        assert stored.numbers["contact_area"] == pytest.approx(grid.numbers["contact_area"], rel=1e-5)
+
+
+def test_every_class_is_in_the_committed_constants_and_features() -> None:
+    document = json.loads(fit.CONSTANTS.read_text(encoding="utf-8"))
+    assert set(document["classes"]) == set(CLASSES)
+    assert fit.FEATURES.stat().st_size <= 500_000
+
+
+@pytest.mark.nightly
+def test_the_committed_features_give_the_committed_constants_again() -> None:
+    document = json.loads(fit.CONSTANTS.read_text(encoding="utf-8"))["constants"]
+    for name, one in fit.fitted(unpacked(fit.FEATURES)).items():
+        allowed = np.maximum(one["standard_error"] or 0.0, 1e-9)
+        assert np.all(np.abs(np.subtract(one["value"], document[name]["value"])) <= allowed), name
