@@ -122,5 +122,10 @@ SURFACES: dict[str, Texts] = {
             "area's middle",
         ),
         "repeats": ("", "the map repeats with its own area (for periodic scenes)"),
+        "height_scale": (
+            "",
+            "factor on all heights; its relative half-width in `[tolerances]` is the uncertainty of the "
+            "instrument's z calibration",
+        ),
     },
 }

@@ -22,7 +22,7 @@ _SOLVED = 1e-3  # relative residual of a linear solve, at most: the digits of a 
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """Derivatives at the fixed set: pressures (window's shape), their peak, F and Q over the parameter.
+    """Derivatives at the fixed set: pressures (window's shape), their peak, F, Q and the approach.
 
     Of peaks that tie the middle one counts, as for a central difference; ``torn`` is how far others are off.
     """
@@ -32,6 +32,7 @@ class Answer:
     torn: float
     friction: float
     binormal: float
+    approach: float
     residual: float
 
 
@@ -71,6 +72,7 @@ def fixed_answer(
         friction=(after.friction - before.friction - (above.friction.jump - below.friction.jump) * excess)
         / span,
         binormal=(after.binormal - before.binormal) / span,
+        approach=found.approach,
         residual=found.residual,
     )
 

@@ -28,8 +28,8 @@ from verification.coverage.building import Solved, pack, solve_all, solved, unpa
 from verification.coverage.class_scenes import CLASSES
 from verification.coverage.likelihood import Fitted, fit
 from verification.framework.case import jsonable
-from verification.output.files import write_result
 from verification.output.provenance import provenance
+from verification.output.result_files import write_result
 from verification.output.text_table import columns
 
 CONSTANTS = Path("refimpl/data/error_bars.json")
