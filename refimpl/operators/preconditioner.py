@@ -15,7 +15,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from refimpl.grid import Array, Mask
 from refimpl.operators.influence import WindowInfluence
@@ -47,7 +47,7 @@ class SpectralPreconditioner:
             symbol = symbol.copy()
             symbol[0, 0] = 2 * symbol.max() or 1.0
         self._stiffest = 1 / symbol.min()
-        self._precision = np.float32 if symbol.size >= _SINGLE else np.float64
+        self._precision: DTypeLike = np.float32 if symbol.size >= _SINGLE else np.float64
         self._symbol = (symbol.min() / symbol).astype(self._precision)
 
     def __call__(self, residual: Array) -> Array:
@@ -61,7 +61,8 @@ class SpectralPreconditioner:
         spectrum *= self._symbol
         n, m = residual.shape
         found = fourier.plane_back(spectrum, self._circle, workers)[:n, :m]
-        return np.multiply(found, largest * self._stiffest, dtype=np.float64)
+        restored: Array = np.multiply(found, largest * self._stiffest, dtype=np.float64)
+        return restored
 
 
 class _Neighbours(NamedTuple):

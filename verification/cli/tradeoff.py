@@ -29,9 +29,7 @@ def run(options: argparse.Namespace) -> int:
     scene = read_scene(options.scene)
     check_outputs([Path(options.scene), *files_of(scene)], json=options.json)
     rows = solve_grids(scene, sorted({*options.grids, options.reference // 2}), options.reference)
-    prices, shown = costs([rows]), costs([rows], "bars")
     found = {"scene": options.scene, "reference": options.reference, "grids": rows}
-    found |= {"prices": prices, "shown": shown}
-    shown = table([{"class": options.scene, **found}])
-    emit(jsonable(found | {"provenance": provenance()}), options.json, shown)
+    found |= {"prices": costs([rows]), "shown": costs([rows], "bars")}
+    emit(jsonable(found | {"provenance": provenance()}), options.json, table([{"class": options.scene, **found}]))
     return 0
