@@ -31,6 +31,6 @@ def run(options: argparse.Namespace) -> int:
     rows = solve_grids(scene, sorted({*options.grids, options.reference // 2}), options.reference)
     found = {"scene": options.scene, "reference": options.reference, "grids": rows}
     found |= {"prices": costs([rows]), "shown": costs([rows], "bars")}
-    document = jsonable(found | {"provenance": provenance()})
-    emit(document, options.json, table([{"class": options.scene, **found}]))
+    shown = table([{"class": options.scene, **found}])
+    emit(jsonable(found | {"provenance": provenance()}), options.json, shown)
     return 0
