@@ -1,62 +1,147 @@
-"""The figures of cases, by id: an entry a figure. A case has those whose pattern its id matches."""
+"""The figures of checks, by id: an entry a figure. A case has those whose pattern its id matches."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from fnmatch import fnmatchcase
 
-from reports.appendix_figures import APPENDIX
-from reports.drawing import Data, Figure, curves, dots, maps, order
+import numpy as np
+from matplotlib.figure import Figure as Canvas
+
+from reports.drawing import COLOURS, INK, MARKERS, Data, Figure, below, curves, label_ticks, look
 from reports.reproduction_figures import REPRODUCTION
-from reports.yield_figures import BEYOND_YIELD
 
-FIG12 = {
-    "crest: first order (%)": "crest, first order",
-    "flank: first order (%)": "flank, first order",
-    "crest: the paper's superposition (%)": "crest, the paper's superposition",
-}
-FIG13 = {
-    f"{slope} degrees: wedge theory (%)": f"{slope} degrees, wedge theory" for slope in ("2.5", "6.5", "15")
-}
-FINITE_ELEMENTS = {  # as points beside the theories that they nearly coincide with
-    "fig12": {f"{place}: finite elements (%)": f"{place}, finite elements" for place in ("crest", "flank")},
-    "fig13": {
-        key.replace("wedge theory", "finite elements"): f"{text.partition(',')[0]}, finite elements"
-        for key, text in FIG13.items()
-    },
-}
-WITH_DIFFERENCE = (6.4, 4.8)  # inches: a second panel for the difference from the exact curve
+PLACES = ("crest", "flank", "valley")
+NEXT = {"+x 1": "downhill (+x)", "-x 1": "uphill (-x)", "across 1": "across"}
+QUANTITIES = {"mu": "$\\mu$", "A": "A", "f_max": "$f_{max}$", "Q": "Q (of F)"}
+TREATMENTS = ("correction", "near-field remedy")
+READINGS = "reading of the slope (degrees)"
+GROUPS = ("self", "in line", "across")
 
-APPENDIX_A = (
-    *(
-        curves(
-            f"appendix-figures/{name}",
-            caption,
-            "x over a",
-            series,
-            xlabel="x / a",
-            ylabel="change of the coefficient (%)",
-            points=FINITE_ELEMENTS[name],
-        )
-        for name, series, caption in (
-            ("fig12", FIG12, "Strip theory and finite elements at 6.5 degrees, from the strip's centre."),
-            ("fig13", FIG13, "Wedge theory and finite elements, from the apex."),
-        )
+
+def _error_map(canvas: Canvas, data: Data) -> None:
+    """Error over the slope: the element itself by place, and the next ones on a flank; dashed: the pair."""
+    own, following = canvas.subplots(2, 1, sharex=True)
+    lines = [(own, place, "self", place) for place in PLACES]
+    lines += [(following, "flank", key, label) for key, label in NEXT.items()]
+    for k, (axes, place, key, label) in enumerate(lines):
+        for name, style in (("one body", "-"), ("pair", "--")):
+            shown = {"color": COLOURS[k % 3], "label": label if name == "one body" else None}
+            axes.plot(data["slope (degrees)"], data[f"{name}, {place}, {key} (%)"], style, **shown)
+    for axes, ylabel in ((own, "element itself (%)"), (following, "next ones, flank (%)")):
+        axes.axhline(-2, color=INK, linestyle=":")
+        axes.axhline(2, color=INK, linestyle=":")
+        axes.set_ylabel(ylabel)
+        axes.legend()
+    following.set_xlabel("maximum slope (degrees)")
+
+
+def _effect(canvas: Canvas, data: Data) -> None:
+    """Change of mu, A, f_max and Q over the rms slope, with 95 % intervals."""
+    slope = np.array(data["rms slope (degrees)"], dtype=float)
+    for axes, (key, label) in zip(canvas.subplots(4, 1, sharex=True), QUANTITIES.items(), strict=True):
+        for k, treatment in enumerate(TREATMENTS):
+            mean, half = data[f"{key}, {treatment}"], data[f"{key}, {treatment}, half width"]
+            axes.errorbar(slope * (1 + 0.03 * k), mean, half, capsize=2, label=treatment, **look(k))
+        axes.axhline(0.0, color=INK, linewidth=0.8)
+        axes.axvline(2.5, color=INK, linestyle=":")
+        axes.set_xscale("log")
+        label_ticks(axes, slope)
+        axes.set(ylabel=f"change of {label} (%)")
+    canvas.axes[-1].set_xlabel("rms slope of the roughness (degrees)")
+    below(canvas, canvas.axes[0])
+
+
+def _reach(canvas: Canvas, data: Data) -> None:
+    """Change of mu and f_max over the remedy's reach; dashed: the correction."""
+    reach = data["reach (elements)"]
+    for axes, key in zip(canvas.subplots(2, 1), ("mu", "f_max"), strict=True):
+        # Without friction mu is nearly zero, and a percentage of mu is meaningless
+        for k, name in enumerate(("with friction", "without friction")[: 1 if key == "mu" else 2]):
+            axes.plot(reach, data[f"{key}, {name}, remedy"], label=name, **look(k))
+            axes.plot(reach, data[f"{key}, {name}, correction"], "--", color=COLOURS[k])
+        axes.set_xscale("symlog", base=2, linthresh=1)
+        label_ticks(axes, reach)
+        label = f"change of {QUANTITIES[key]} (%)"
+        axes.set(xlabel="reach on the slope (elements)", ylabel=label)
+    below(canvas, axes)
+
+
+def _readings(canvas: Canvas, data: Data) -> None:
+    """Largest error by body, coefficient and reading of the slope, beside 2 %."""
+    names = [name for name in data if name.endswith(GROUPS)]
+    axes = canvas.add_subplot()
+    for k, reading in enumerate(data[READINGS]):
+        errors = [data[name][k] for name in names]
+        axes.plot(errors, np.arange(len(names)), MARKERS[k], color=COLOURS[k], label=f"{reading} degrees")
+    axes.axvline(2.0, color=INK, linestyle=":")
+    axes.set_xscale("log")
+    axes.set_yticks(range(len(names)), [name.replace(", ", ",\n", 1) for name in names])
+    axes.invert_yaxis()
+    label_ticks(axes, (0.1, 0.5, 2, 10))
+    axes.set_xlabel("largest error (%)")
+    below(canvas, axes)
+
+
+WITH_DIFFERENCE = 5.0  # inches: a second panel for the difference from the exact curve
+
+APPENDIX = (
+    Figure(
+        "fem3d/error-map",
+        tuple(f"pair, {place}, self (%)" for place in PLACES),
+        _error_map,
+        "Error of flat influence coefficients under one square element on a wave of 20 half-widths, nu 0.3, "
+        "of the element itself and of the next ones: one body, and dashed copper under steel; dotted: 2 %.",
+        6.4,
+    ),
+    Figure(
+        "fem3d/less-than-two-percent",
+        (READINGS,),
+        _readings,
+        "Largest error on crest, flank or valley, by what 'less than 2 %' may mean; dotted: 2 %.",
+        5.6,
+    ),
+    Figure(
+        "appendix-correction/paper-pair",
+        tuple(f"{q}, {t}" for q in QUANTITIES for t in TREATMENTS),
+        _effect,
+        "{title}: what exact facet tractions and the paper's near-field remedy change; means over eight "
+        "surfaces, 95 % intervals; dotted: the paper's largest rms slope.",
+        9.0,
+    ),
+    Figure(
+        "appendix-correction/paper-remedy",
+        ("reach (elements)", "mu, with friction, remedy"),
+        _reach,
+        "The paper's remedy over how far coefficients are computed on the slope; dashed: the correction.",
+        5.6,
     ),
     curves(
-        "appendix-strip/crest-small",
-        "Surface displacement of a strip on a crest of 15 degrees and on a flat boundary (Fig. 12).",
+        "appendix-figures/fig12",
+        "Strip theory and finite elements on a crest of 6.5 degrees, from the strip's centre.",
         "x over a",
-        {"15 degrees, superposition": "wavy, superposition", "15 degrees, first order": "wavy, first order"},
-        exact={"flat": "flat boundary"},
-        xlabel="distance from the centre / half-width of the strip",
-        ylabel="displacement, units of p a / E",
+        {
+            "crest: first order (%)": "first order",
+            "crest: the paper's superposition (%)": "the paper's superposition",
+        },
+        exact={"crest: finite elements (%)": "finite elements"},
+        xlabel="x / a",
+        ylabel="change of the coefficient (%)",
+    ),
+    curves(
+        "appendix-figures/fig13",
+        "Wedge theory and finite elements (open markers), from the apex.",
+        "x over a",
+        {f"{slope} degrees: wedge theory (%)": f"{slope} degrees" for slope in ("2.5", "6.5", "15")},
+        points={f"{slope} degrees: finite elements (%)": "" for slope in ("2.5", "6.5", "15")},
+        xlabel="x / a",
+        ylabel="change of the coefficient (%)",
     ),
 )
 
 SMOOTH = (
     curves(
-        "kernels/textbook-*-fails",
+        "kernels/textbook-normal-fails",
         "{title}: relative error of its textbook form and of this code, over the distance from the load.",
         "offset",
         {"textbook": "textbook form, median", "production": "this code, largest"},
@@ -74,23 +159,7 @@ SMOOTH = (
         xlabel="x from the centre (mm)",
         ylabel="pressure (MPa)",
         difference="difference (MPa)",
-        size=WITH_DIFFERENCE,
-    ),
-    Figure(
-        "hertz/peak-pressure",
-        ("pressure", "side"),
-        maps({"pressure": "Pressure"}, side="side", unit="MPa"),
-        "Map of the contact pressure.",
-        (4.8, 3.8),
-    ),
-    curves(
-        "sliding/trailing-edge",
-        "Profiles along the sliding direction, against the contact without friction.",
-        "x",
-        {"pressure along": "pressure", "traction along": "traction"},
-        exact={"hertz pressure": "Hertz", "hertz traction": "beta times Hertz"},
-        xlabel="x from the centre, along sliding (mm)",
-        ylabel="stress (MPa)",
+        height=WITH_DIFFERENCE,
     ),
     curves(
         "sliding/trailing-edge",
@@ -99,13 +168,6 @@ SMOOTH = (
         {"change by friction": "with friction less without"},
         xlabel="x from the centre, along sliding (mm)",
         ylabel="pressure (MPa)",
-    ),
-    Figure(
-        "sliding/trailing-edge",
-        ("pressure", "traction", "side"),
-        maps({"pressure": "Pressure", "traction": "Traction"}, side="side", unit="MPa"),
-        "Maps of contact pressure and traction.",
-        (8.6, 3.8),
     ),
     curves(
         "reference/sliding-wave-shift",
@@ -116,7 +178,7 @@ SMOOTH = (
         xlabel="x / wavelength",
         ylabel="pressure / that of full contact",
         difference="difference",
-        size=WITH_DIFFERENCE,
+        height=WITH_DIFFERENCE,
     ),
     curves(
         "reference/jgh-area",
@@ -132,6 +194,16 @@ SMOOTH = (
 
 ROUGH = (
     curves(
+        "capped/sphere-[kj]*",
+        "{title}: mean pressure of the capped model, and the published law.",
+        "load / load of first yield",
+        {"mean pressure / H, cap": "pressure cap", "mean pressure / H, law": "finite-element law"},
+        xlabel="load / load of first yield",
+        ylabel="mean contact pressure / H",
+        log="x",
+        marker=True,
+    ),
+    curves(
         "surfaces/ensemble",
         "Autocorrelation of an ensemble of rough surfaces, and its difference from Eq. (9).",
         "lag / l",
@@ -141,7 +213,7 @@ ROUGH = (
         xlabel="lag / correlation length",
         ylabel="autocorrelation",
         difference="difference",
-        size=WITH_DIFFERENCE,
+        height=WITH_DIFFERENCE,
     ),
     curves(
         "surfaces/spectrum",
@@ -165,16 +237,6 @@ ROUGH = (
         marker=True,
     ),
     curves(
-        "reference/greenwood-tripp-*",
-        "Mean pressure of rough spheres and of the asperity model of Greenwood and Tripp.",
-        "r/a0",
-        {"p/p0": "rough spheres, mean"},
-        exact={"Greenwood-Tripp p/p0": "Greenwood and Tripp 1967"},
-        band=("standard error", "one standard error"),
-        xlabel="distance from the axis / Hertz radius",
-        ylabel="pressure / Hertz peak",
-    ),
-    curves(
         "reference/rough-plane-slope",
         "Contact fraction of a rough plane over the load.",
         "p/(E* h')",
@@ -191,12 +253,13 @@ ROUGH = (
         {"kappa": "mean of eight realisations", "kappa, H = 0.3": "H = 0.3", "kappa, H = 0.8": "H = 0.8"},
         exact={
             "Bush, Gibson and Thomas": "Bush, Gibson and Thomas 1975",
-            "simulations, low": "lowest of published simulations",
+            "simulations, low": "lowest published simulation",
             "Persson": "Persson 2001",
         },
         band=("standard error", "standard error"),
         xlabel="Nayak's parameter",
         ylabel="A E* rms gradient / P",
+        height=4.6,
         log="x",
         marker=True,
     ),
@@ -211,7 +274,8 @@ ROUGH = (
             "outlier": "fifth row 10 % too high",
         },
         xlabel="load (N)",
-        ylabel="residual / standard uncertainty",
+        ylabel="residual / standard u",
+        height=4.0,
         log="x",
         marker=True,
     ),
@@ -242,71 +306,9 @@ BY_GRID = (
         needs=tuple(f"{name}: {column}" for name in TIMED for column in ("M", "s")),
         derived=_table2_seconds,
     ),
-    *(
-        Figure(
-            f"hertz/{case}",
-            ("spacing", *series),
-            order(series, spacing="spacing", ylabel="relative error", expected=(expected,)),
-            f"Error of the {quantity} over the grid, with fitted and expected order.",
-        )
-        for case, series, expected, quantity in (
-            ("peak-order", {"peak pressure": "peak pressure"}, 2.0, "peak pressure"),
-            ("approach-order", {"approach": "approach"}, 2.0, "approach"),
-            ("profile", {"profile": "pressure within 0.8 radii"}, 2.0, "pressure"),
-            ("radius-corrected", {"raw": "raw area", "corrected": "corrected area"}, 1.0, "contact radius"),
-        )
-    ),
-    *(
-        Figure(
-            f"reference/{cases}",
-            ("M", "error"),
-            order({"error": quantity}, ylabel="relative error", expected=(expected,)),
-            f"{{title}}: error of the {quantity} over the grid, and the order expected.",
-        )
-        for cases, quantity, expected in (
-            ("square-punch-order", "stiffness", 1.0),
-            ("*-approach-order", "approach", 2.0),
-        )
-    ),
 )
 
-SCENE_BY_SCENE = (
-    *(
-        Figure(cases, ("worst",), dots("worst", xlabel=xlabel, limit=limit), caption, (6.4, height))
-        for cases, xlabel, limit, caption, height in (
-            ("kernels/*al-50-digits", "largest relative error", 1e-14,
-             "{title}: largest relative error by group of points.", 3.8),
-            ("cross-check/[!c]*", "difference of the solvers", 1e-9,
-             "{title}: difference scene by scene.", 5.0),
-            ("manufactured/*", "error", 1e-12, "{title}: error of both solvers.", 5.0),
-            ("balance/normal-force", "misfit of the load", 1e-8,
-             "Normal force against the load, by scene.", 5.0),
-            ("balance/prescribed-approach", "difference", 1e-9,
-             "Approach and load prescribed, by scene.", 5.0),
-        )
-    ),
-    *(
-        Figure(
-            f"accuracy/{name}",
-            ("difference / bar",),
-            dots("difference / bar", xlabel="difference of mu / bar of tau's active set", limit=1.0),
-            "{title}: difference from the rule that excludes elements from tau, over its bar.",
-            (6.4, height),
-        )
-        for name, height in (("tau-shares", 3.4), ("tau-shares-128", 6.8))
-    ),
-    Figure(
-        "kernels/tables-50-digits",
-        ("normal, dy/dx = 1",),
-        dots(None, xlabel="largest relative error", limit=1e-14),
-        "Largest relative error of the convolution's tables, by kernel and shape of the elements.",
-    ),
-)  # fmt: skip
-
-DECLARED = (
-    *BEYOND_YIELD, *REPRODUCTION, *APPENDIX, *APPENDIX_A, *SMOOTH, *ROUGH, *BY_GRID,
-    *SCENE_BY_SCENE,
-)  # fmt: skip
+DECLARED = (*REPRODUCTION, *APPENDIX, *SMOOTH, *ROUGH, *BY_GRID)
 
 
 def figures_of(case_id: str) -> list[Figure]:

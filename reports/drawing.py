@@ -35,7 +35,16 @@ STYLE: dict[Any, Any] = {
 }  # fmt: skip
 _TEXT = re.compile(r"(<text\b[^>]*>)([^<]*)(</text>)")
 _NAME = re.compile(r"[\w/]+(-\w+)+")
-SIZE = (6.4, 3.8)  # inches
+WIDTH = 4.2
+"""Inches of every figure, one panel: exponents of 7 points have 9 px where a phone shows it 396 px wide."""
+HEIGHT = 3.4
+
+
+def below(canvas: Canvas, axes: Axes) -> None:
+    """Put the legend of the axes below all panels, where it covers no data."""
+    handles, labels = axes.get_legend_handles_labels()
+    columns = 2 if sum(sorted(map(len, labels))[-2:]) < 44 else 1
+    canvas.legend(handles, labels, loc="outside lower center", ncols=columns)
 
 
 def look(k: int) -> dict[str, Any]:
@@ -55,7 +64,7 @@ class Figure:
     needs: tuple[str, ...]
     draw: Draw
     caption: str
-    size: tuple[float, float] = SIZE
+    height: float = HEIGHT
     derived: Callable[[Data], Data] = field(default=lambda _: {})
 
     def available(self, data: Data) -> bool:
@@ -77,7 +86,7 @@ def svg(figure: Figure, data: Data, name: str = "figure", caption: str | None = 
         return None
     data = complete(figure, data)
     with matplotlib.rc_context(STYLE):
-        canvas = Canvas(figsize=figure.size, layout="constrained")
+        canvas = Canvas(figsize=(WIDTH, figure.height), layout="constrained")
         figure.draw(canvas, data)
         buffer = io.StringIO()
         # No date: the same results give the same bytes.
@@ -127,7 +136,7 @@ def curves(
     marker: bool = False,
     per_x: float = 1.0,
     difference: str = "",
-    size: tuple[float, float] = SIZE,
+    height: float = HEIGHT,
 ) -> Figure:
     """Return the figure of series (key to legend text) over `x`, and those of `exact` dashed; `points` are
     open markers in the colours of the series.
@@ -141,14 +150,14 @@ def curves(
 
     def draw(canvas: Canvas, data: Data) -> None:
         over, middle = per_x * _numbers(data[x]), _numbers(data[next(iter(series))])
-        axes, below = canvas.add_subplot(), None
+        axes, lower = canvas.add_subplot(), None
         if difference:
             canvas.clear()
-            axes, below = canvas.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+            axes, lower = canvas.subplots(2, 1, sharex=True, height_ratios=(2, 1))
             less = middle - _numbers(data[next(iter(exact))])
-            below.plot(over, less, color=COLOURS[0])
-            below.set_ylabel(difference)
-        (below or axes).set_xlabel(xlabel)
+            lower.plot(over, less, color=COLOURS[0])
+            lower.set_ylabel(difference)
+        (lower or axes).set_xlabel(xlabel)
         _scale(axes, log)
         axes.set_ylabel(ylabel)
         for k, (key, label) in enumerate(series.items()):
@@ -162,89 +171,22 @@ def curves(
             width = _numbers(data[band[0]])
             shade: dict[str, Any] = {"color": COLOURS[0], "alpha": 0.2, "label": band[1]}
             axes.fill_between(over, middle - width, middle + width, **shade)
-            if below is not None:
-                below.fill_between(over, less - width, less + width, **shade)
+            if lower is not None:
+                lower.fill_between(over, less - width, less + width, **shade)
         if "x" in log:
             _few_ticks(axes, over)
-        axes.legend()
+        below(canvas, axes)
 
     needs = dict.fromkeys((x, *series, *points, *exact, *(band or ())[:1]))
-    return Figure(cases, tuple(needs), draw, caption, size)
-
-
-def order(
-    series: Mapping[str, str],
-    *,
-    spacing: str | None = None,
-    ylabel: str = "error",
-    expected: Sequence[float] = (1.0, 2.0),
-) -> Draw:
-    """Errors over the grid, log-log, with the fitted orders and lines of the expected ones.
-
-    The grid is the series `spacing` (m) or else that of the elements per side, `M`.
-    """
-
-    def draw(canvas: Canvas, data: Data) -> None:
-        axes = _axes(canvas, "elements per side" if spacing is None else "element (µm)", ylabel, "xy")
-        grid = np.asarray(data[spacing or "M"], dtype=float) * (1.0 if spacing is None else 1e6)
-        if not (grid.ndim == 1 and np.all((grid > 0) & np.isfinite(grid))):
-            raise ValueError("grids that are no positive numbers")
-        h = 1 / grid if spacing is None else grid
-        finest = np.inf
-        for k, (key, label) in enumerate(series.items()):
-            error = np.abs(_numbers(data[key]))
-            shown = (error > 0) & np.isfinite(error)  # on logarithmic axes
-            if np.unique(h[shown]).size < 2:
-                raise ValueError(f"fewer than two errors of {label} that are positive numbers")
-            fitted = np.polyfit(np.log(h[shown]), np.log(error[shown]), 1)[0]
-            text = f"{label}, order {fitted:.2f}"
-            axes.plot(grid, error, marker=MARKERS[k], color=COLOURS[k], label=text)
-            finest = min(finest, error[np.argmin(h)])
-        for slope, style in zip(expected, ("--", ":", "-."), strict=False):
-            axes.plot(grid, 0.6 * finest * (h / h.min()) ** slope, style, color=INK, label=f"order {slope:g}")
-        label_ticks(axes, grid, ".3g")
-        axes.legend()
-
-    return draw
-
-
-def dots(values: str | None, *, xlabel: str, limit: float | None = None) -> Draw:
-    """One dot per entry of the mapping `values` (or of all data), on a logarithmic axis; zeros say so."""
-
-    def draw(canvas: Canvas, data: Data) -> None:
-        entries = data if values is None else data[values]
-        sizes = _numbers(list(entries.values()))
-        axes = _axes(canvas, xlabel, "", "x")
-        shown = [*sizes[sizes > 0], *([limit] if limit is not None else [])] or [1.0]
-        axes.set_xlim(min(0.2 * min(shown), 1e-3 * max(shown)), 5 * max(shown))  # labels of decades alone
-        axes.set(ylim=(len(sizes) - 0.5, -0.5), yticks=range(len(sizes)), yticklabels=list(entries))
-        for k, size in enumerate(sizes):
-            if size > 0:
-                axes.plot(size, k, marker="o", color=COLOURS[0])
-                side = -1 if limit is not None and 0.02 * limit < size <= limit else 1  # not across the limit
-                axes.annotate(
-                    f"{size:.1e}",
-                    (size, k),
-                    (8 * side, -3),
-                    textcoords="offset points",
-                    fontsize=9,
-                    ha="right" if side < 0 else "left",
-                )
-            else:
-                axes.text(axes.get_xlim()[0], k, " exactly 0" if size == 0 else " not available", va="center")
-        if limit is not None:
-            axes.axvline(limit, color=COLOURS[1], linestyle="--", label="tolerance")
-            axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2)
-
-    return draw
+    return Figure(cases, tuple(needs), draw, caption, height)
 
 
 def maps(fields: Mapping[str, str], *, side: str | None, unit: str, colours: str = "viridis") -> Draw:
     """Maps (key to title) of arrays ``[i, j]`` along x and y, one colour bar each; zero is left blank."""
 
     def draw(canvas: Canvas, data: Data) -> None:
-        row = canvas.subplots(1, len(fields), squeeze=False)[0]
-        for axes, (key, title) in zip(row, fields.items(), strict=True):
+        panels = canvas.subplots(len(fields), 1, squeeze=False)[:, 0]
+        for axes, (key, title) in zip(panels, fields.items(), strict=True):
             field = np.ma.masked_equal(_numbers(data[key]), 0.0)
             edge = float(data[side]) if side is not None else field.shape[0]
             extent = (0.0, edge, 0.0, edge)
@@ -257,18 +199,11 @@ def maps(fields: Mapping[str, str], *, side: str | None, unit: str, colours: str
     return draw
 
 
-def label_ticks(axes: Axes, values: Iterable[float], form: str = "g") -> None:
+def label_ticks(axes: Axes, values: Iterable[float]) -> None:
     """Label the x axis at the values alone, as a logarithmic axis needs it."""
     values = list(values)
-    axes.set_xticks(values, [format(value, form) for value in values])
+    axes.set_xticks(values, [f"{value:g}" for value in values])
     axes.xaxis.set_minor_locator(NullLocator())
-
-
-def _axes(canvas: Canvas, xlabel: str, ylabel: str, log: str) -> Axes:
-    axes = canvas.add_subplot()
-    axes.set(xlabel=xlabel, ylabel=ylabel)
-    _scale(axes, log)
-    return axes
 
 
 def _scale(axes: Axes, log: str) -> None:

@@ -8,18 +8,13 @@ import numpy as np
 from matplotlib.figure import Figure as Canvas
 
 from reports.agreement import column_of
-from reports.drawing import COLOURS, INK, MARKERS, Data, Figure, curves, look, maps
+from reports.drawing import COLOURS, INK, MARKERS, Data, Figure, below, look, maps
 
 DASHED, DOTTED, DASH_DOT = "--", ":", "-."
 LOADS = ("14 N", "42 N", "70 N")
 SIGMA = "$\\sigma_e$ (µm)"
 PSI = "$\\psi$, Eq. (12) with the correlation length"
 FIG11 = ("undeformed height", "undeformed slope", "deformed height in contact", "deformed slope in contact")
-
-
-def _below(canvas: Canvas, columns: int) -> None:
-    """One legend for all panels, which have the same lines, where it hides none of them."""
-    canvas.legend(*canvas.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=columns)
 
 
 def _values(data: Data, name: str) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
@@ -42,7 +37,7 @@ def _table3(canvas: Canvas, data: Data) -> None:
     meshes = np.unique(mesh)
     axes.set_xticks(np.log2(meshes), [f"{m:.0f}²" for m in meshes])
     axes.set(xlabel="mesh", ylabel="this code / printed")
-    axes.legend()
+    below(canvas, axes)
 
 
 def _fig5_differences(data: Data) -> dict[str, list[float]]:
@@ -58,32 +53,32 @@ def _fig5_differences(data: Data) -> dict[str, list[float]]:
 
 def _fig5(canvas: Canvas, data: Data) -> None:
     x = _values(data, "x (mm)")
-    panels = canvas.subplots(2, 2, sharex=True, sharey="row", height_ratios=(2, 1))
-    for axes, below, suffix, title in zip(
-        *panels, ("", " across"), ("(a) along sliding", "(b) across"), strict=True
+    panels = canvas.subplots(4, 1, sharex=True, height_ratios=(2, 1, 2, 1)).reshape(2, 2)
+    for (axes, lower), suffix, title in zip(
+        panels, ("", " across"), ("(a) along sliding", "(b) across"), strict=True
     ):
         axes.plot(x, data[f"pressure{suffix} (MPa)"], color=COLOURS[0], label="normal stress")
         axes.plot(x, data[f"traction{suffix} (MPa)"], color=COLOURS[1], label="tangential stress")
         axes.plot(x, data["hertz (MPa)"], DOTTED, color=INK, label="Hertz")
         axes.plot(x, data["coulomb (MPa)"], DASHED, color=INK, label="Coulomb, same $\\mu$")
-        below.plot(x, data[f"pressure{suffix} less hertz (MPa)"], color=COLOURS[0])
-        below.plot(x, data[f"traction{suffix} less coulomb (MPa)"], color=COLOURS[1])
+        lower.plot(x, data[f"pressure{suffix} less hertz (MPa)"], color=COLOURS[0])
+        lower.plot(x, data[f"traction{suffix} less coulomb (MPa)"], color=COLOURS[1])
         axes.set(ylabel="stress (MPa)", title=title)
-        below.set(xlabel="distance from the centre (mm)", ylabel="difference (MPa)")
-    _below(canvas, 4)
+        lower.set_ylabel("difference (MPa)")
+    canvas.axes[-1].set_xlabel("distance from the centre (mm)")
+    below(canvas, canvas.axes[0])
 
 
 def _fig6(canvas: Canvas, data: Data) -> None:
     axes = canvas.add_subplot()
-    r, p, error = (_values(data, name) for name in ("r/a0", "p/p0", "standard error"))
-    axes.plot(r, p, color=COLOURS[0], label="this code, mean")
-    axes.fill_between(r, p - 2 * error, p + 2 * error, color=COLOURS[0], alpha=0.2, label="95 %")
+    r = _values(data, "r/a0")
+    axes.plot(r, data["p/p0"], color=COLOURS[0], label="this code, mean")
+    axes.fill_between(r, data["low"], data["high"], color=COLOURS[0], alpha=0.25, label="95 %, bootstrap")
     axes.plot(r, data["Hertz p/p0"], DASHED, color=INK, label="Hertz")
-    label = "Greenwood and Tripp, summits of Eq. (9)"
-    axes.plot(r, data["Greenwood-Tripp p/p0"], DASH_DOT, color=COLOURS[1], label=label)
-    axes.plot(r, data["mu = 4 p/p0"], DOTTED, color=COLOURS[1], label="the same, textbook's $\\mu$ = 4")
+    axes.plot(r, data["Greenwood-Tripp p/p0"], DASH_DOT, color=COLOURS[1], label="Greenwood, Tripp: Eq. (9)")
+    axes.plot(r, data["mu = 4 p/p0"], DOTTED, color=COLOURS[1], label="the same, $\\mu$ = 4")
     axes.set(xlabel="$r / a_0$", ylabel="effective pressure / $f_0$")
-    axes.legend()
+    below(canvas, axes)
 
 
 def _fig6d(canvas: Canvas, data: Data) -> None:
@@ -101,50 +96,43 @@ def _fig7_difference(data: Data) -> dict[str, list[float]]:
 
 
 def _fig7(canvas: Canvas, data: Data) -> None:
-    panels = canvas.subplot_mosaic([["a", "b"], ["a", "c"]], height_ratios=(3, 1), sharex=True)
-    before, contact, below = (panels[name] for name in "abc")
+    before, contact, change = canvas.subplots(3, 1, height_ratios=(3, 3, 1.5), sharex=True)
     x = _values(data, "x (mm)")
     for axes, state in ((before, "before"), (contact, "deformed")):
         axes.plot(x, data[f"ball {state} (um)"], color=COLOURS[1], label="ball")
         axes.plot(x, data[f"flat {state} (um)"], color=COLOURS[0], label="half-space")
     before.axhline(0.0, color=INK, linestyle=DASHED, label="mean plane")
-    contact.plot(
-        x, data["flat deformed, frictionless (um)"], DOTTED, color=COLOURS[2], label="without friction"
-    )
-    contact.plot(x, data["mean plane (um)"], DASHED, color=INK, label="deformed mean plane")
-    below.plot(x, data["with less without friction (nm)"], color=COLOURS[2])
+    contact.plot(x, data["mean plane (um)"], DASHED, color=INK)
+    change.plot(x, data["with less without friction (nm)"], color=COLOURS[2])
     for axes, title in ((before, "(a) before contact"), (contact, "(b) in contact")):
         axes.set(ylabel="height (µm)", title=title)
-        axes.legend()
-    below.set_ylabel("with less without\nfriction (nm)")
-    for axes in (before, below):
-        axes.set_xlabel("x from the centre (mm)")
+    change.set(xlabel="x from the centre (mm)", ylabel="by friction (nm)")
+    below(canvas, before)
 
 
 def _fig8(canvas: Canvas, data: Data) -> None:
-    friction, area, rates, key = canvas.subplots(2, 2).ravel()
+    friction, area, rates = canvas.subplots(3, 1)
     sigma = _values(data, "sigma_e (um)")
     for k, load in enumerate(LOADS):
         style = {"capsize": 2, "label": f"P = {load}", **look(k)}
         friction.errorbar(sigma, data[f"mu, {load}"], data[f"mu half width, {load}"], **style)
         area.errorbar(sigma, data[f"A (mm^2), {load}"], data[f"A half width (mm^2), {load}"], **style)
         middle = data["sigma_e of rates (um)"]
-        rates.plot(middle, data[f"rate of mu, {load}"], color=COLOURS[k], label=f"$\\mu$, P = {load}")
+        rates.plot(middle, data[f"rate of mu, {load}"], color=COLOURS[k], label="$\\mu$" if k == 0 else None)
         ring: dict[str, Any] = {"markerfacecolor": "none", "markersize": 7, "color": INK}
-        rates.plot(middle, data[f"rate of A, {load}"], MARKERS[k], label=f"A, P = {load}", **ring)
+        rates.plot(middle, data[f"rate of A, {load}"], MARKERS[k], label="A" if k == 0 else None, **ring)
     per_micron = _values(data, "psi")[-1] / sigma[-1]
-    for axes, ylabel, title in (
-        (friction, "friction coefficient", "(a)"),
-        (area, "contact area (mm²)", "(b)"),
-        (rates, "rate of change / its first", "(c)"),
+    above = friction.secondary_xaxis("top", (lambda s: s * per_micron, lambda p: p / per_micron))
+    above.set_xlabel(PSI)
+    for axes, ylabel in (
+        (friction, "(a) friction coefficient"),
+        (area, "(b) contact area (mm²)"),
+        (rates, "(c) rate of change / first"),
     ):
-        axes.set(xlabel=SIGMA, ylabel=ylabel, title=title)
-        above = axes.secondary_xaxis("top", (lambda s: s * per_micron, lambda p: p / per_micron))
-        above.set_xlabel(PSI)
-    key.set_axis_off()
-    loads, curves = (panel.get_legend_handles_labels() for panel in (friction, rates))
-    key.add_artist(key.legend(*loads, loc="upper left", bbox_to_anchor=(0.05, 0.95)))
-    key.legend(*curves, loc="upper left", bbox_to_anchor=(0.05, 0.55))
+        axes.set_ylabel(ylabel)
+    rates.set_xlabel(SIGMA)
+    rates.legend()
+    below(canvas, friction)
 
 
 def _fig9(canvas: Canvas, data: Data) -> None:
@@ -160,17 +148,17 @@ def _fig9(canvas: Canvas, data: Data) -> None:
 
 
 def _fig10(canvas: Canvas, data: Data) -> None:
-    above, below = canvas.subplots(2, 1)
+    above, lower = canvas.subplots(2, 1)
     x = _values(data, "direction (deg)")
     for axes, start, ylabel in (
         (above, "elastic / F, ", "elastic part / F"),
-        (below, "F / mean - 1, ", "F / mean over directions - 1"),
+        (lower, "F / mean - 1, ", "F / mean - 1"),
     ):
         for k, name in enumerate(name for name in data if name.startswith(start)):
             label = f"$\\sigma$ = {name.removeprefix(start).replace('um', 'µm')}"
             axes.plot(x, data[name], label=label, **look(k))
         axes.set(xlabel="direction of sliding (degrees)", ylabel=ylabel)
-    above.legend(ncols=2)
+    below(canvas, above)
 
 
 def _fig11_gaussians(data: Data) -> dict[str, list[float]]:
@@ -186,15 +174,15 @@ def _fig11_gaussians(data: Data) -> dict[str, list[float]]:
 
 def _fig11(canvas: Canvas, data: Data) -> None:
     units = ("height from the mean (µm)", "slope from the mean (degrees)") * 2
-    for axes, panel, letter, unit in zip(canvas.subplots(2, 2).ravel(), FIG11, "abcd", units, strict=True):
+    for axes, panel, letter, unit in zip(canvas.subplots(4, 1), FIG11, "abcd", units, strict=True):
         x, density = _values(data, f"{panel}: value"), _values(data, f"{panel}: density")
         axes.step(x, density, where="mid", color=COLOURS[0], label="all realisations")
         axes.plot(x, data[f"{panel}: Gaussian"], DASHED, color=INK, label="Gaussian of the same rms")
         (skew, half), (kurtosis, wide) = data[f"{panel}: skewness"], data[f"{panel}: kurtosis"]
-        title = f"({letter}) skewness {skew:+.2f} ± {half:.2f}, kurtosis {kurtosis:.2f} ± {wide:.2f}"
+        title = f"({letter}) skewness {skew:+.2f} ± {half:.2f}\nkurtosis {kurtosis:.2f} ± {wide:.2f}"
         axes.set_title(title, fontsize=9)
         axes.set(xlabel=unit, ylabel="density")
-    _below(canvas, 2)
+    below(canvas, canvas.axes[0])
 
 
 def _traces(canvas: Canvas, data: Data) -> None:
@@ -219,7 +207,7 @@ def _scatter(canvas: Canvas, data: Data) -> None:
             axes.axhline(100 * float(data[name]), color=INK, linestyle=style, label=_symbol(name))
     axes.set(xlabel=SIGMA, ylabel="standard deviation / mean (%)")
     axes.set_ylim(bottom=0)
-    axes.legend()
+    below(canvas, axes)
 
 
 def _symbol(name: str) -> str:
@@ -240,7 +228,7 @@ REPRODUCTION = (
             {"surface map": "(a) half-space", "ball map": "(b) ball"}, side="side (mm)", unit="height / rms"
         ),
         "Fig. 4: one realisation of both surfaces, normalised.",
-        (8.6, 3.8),
+        7.2,
     ),
     Figure(
         "reproduction/fig5-*",
@@ -248,16 +236,17 @@ REPRODUCTION = (
         _fig5,
         "Fig. 5: normal and tangential stress of the smooth sliding sphere, P = 70 N; below, normal stress "
         "less that of Hertz, and tangential stress less Coulomb's.",
-        (8.6, 5.2),
+        8.0,
         _fig5_differences,
     ),
     *(
         Figure(
             f"reproduction/fig6{panel}*",
-            ("r/a0", "p/p0", "standard error", "Hertz p/p0", "Greenwood-Tripp p/p0", "mu = 4 p/p0"),
+            ("r/a0", "p/p0", "low", "high", "Hertz p/p0", "Greenwood-Tripp p/p0", "mu = 4 p/p0"),
             _fig6,
-            f"Fig. 6({panel}): effective pressure of the frictionless rough contact, sigma_e = {rms} um; the "
-            "innermost rings have few elements, and wide intervals.",
+            f"Fig. 6({panel}): effective pressure of the frictionless rough contact on rings of equal area, "
+            f"sigma_e = {rms} um.",
+            4.0,
         )
         for panel, rms in (("a", "0.068"), ("b", "0.511"), ("c", "2.69"))
     ),
@@ -266,23 +255,24 @@ REPRODUCTION = (
         ("pressure map", "side (mm)", "Hertz radius (mm)"),
         _fig6d,
         "Fig. 6(d): contact pressure and the Hertz circle (dashed).",
-        (5.4, 4.4),
+        3.6,
     ),
     Figure(
         "reproduction/fig7*",
         ("x (mm)", "flat before (um)", "flat deformed (um)", "flat deformed, frictionless (um)"),
         _fig7,
-        "Fig. 7: section of ball and half-space before contact and in contact, and by how much friction "
-        "moves the half-space.",
-        (8.6, 5.6),
+        "Fig. 7: section of ball and half-space before contact and in contact; the lower panel carries the "
+        "claim: by how much friction moves the half-space, in nm.",
+        8.0,
         _fig7_difference,
     ),
     Figure(
         "reproduction/fig8-*",
         ("sigma_e (um)", "psi", "sigma_e of rates (um)", *(f"mu, {load}" for load in LOADS)),
         _fig8,
-        "Fig. 8: friction, contact area and their rates of change; bars are 95 % intervals.",
-        (8.6, 7.0),
+        "Fig. 8: friction, contact area and their rates of change; bars are 95 % intervals. Points without "
+        "one are of the smooth contact, which has no scatter.",
+        8.6,
     ),
     Figure(
         "reproduction/fig9*",
@@ -295,7 +285,7 @@ REPRODUCTION = (
         ("direction (deg)",),
         _fig10,
         "Fig. 10: elastic part of friction, and friction, over the direction of sliding; one realisation.",
-        (6.4, 6.0),
+        6.4,
     ),
     Figure(
         "reproduction/fig11-*",
@@ -303,7 +293,7 @@ REPRODUCTION = (
         _fig11,
         "Fig. 11: heights and slopes within the nominal contact before, and in true contact; means over "
         "realisations with 95 % intervals.",
-        (8.6, 6.4),
+        10.5,
         _fig11_gaussians,
     ),
     Figure(
@@ -311,22 +301,12 @@ REPRODUCTION = (
         ("offset (um)", "mu", "A (mm^2)", "elastic friction (N)", "Q (N)"),
         _traces,
         "Traces of a slide: friction, contact area, elastic friction and Q over the distance.",
-        (6.4, 7.2),
+        7.2,
     ),
     Figure(
-        "reproduction/section8-*",
+        "reproduction/section8-scatter*",
         ("sigma_e (um)", "scatter of A", "scatter of mu"),
         _scatter,
         "{title}: standard deviation over the mean.",
-    ),
-    curves(
-        "reproduction/facet-tractions",
-        "Resultants with exact facet tractions against the printed cosines.",
-        "rms slope",
-        {"change of N": "N", "change of F": "F"},
-        xlabel="rms slope on the contact",
-        ylabel="exact facets / printed cosines - 1",
-        log="xy",
-        marker=True,
     ),
 )

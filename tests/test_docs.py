@@ -14,7 +14,7 @@ from tests.documents import ROOT, agree, blocks, commands, run
 DOCS = sorted((ROOT / "docs").glob("*.md"))
 
 
-LONG = {"notebooks"}  # a whole notebook
+LONG = {"notebooks", "read-the-report"}  # a whole notebook, and the report of all committed results
 
 
 @pytest.mark.parametrize(

@@ -12,10 +12,25 @@ from tests.documents import ROOT, agree
 
 FOLDER = ROOT / "docs" / "notebooks"
 STATED = {
+    "area_and_load": """
+        11 of 11 converged
+        A/A0 at 0.02: 0.0452, Greenwood and Williamson 0.0412, Persson 0.0319
+        kappa 2.19 to 2.31, Nayak's parameter 1.8 to 11.6
+    """,
+    "power_to_amontons": """
+        24 of 24 converged
+        powers -0.33 -0.19 -0.01 +0.03
+        tau 15.0 MPa, beta 0.081
+    """,
+    "wave_to_full_contact": """
+        16 of 16 converged
+        full contact: pressures differ from the exact ones by less than 1e-6 p*: True
+        half: A/A0 = 0.500 in x, 0.706 in x and y
+    """,
     "ball_on_rough_flat": """
-        mu = 0.1056 on 64 x 64, converged
+        mu = 0.1057 on 64 x 64, converged
         fine mu = 0.1064, within the bar: True
-        A = 0.1243 mm^2 in 27 patches
+        A = 0.1250 mm^2 in 27 patches
     """,
     "checking_a_solver": """
         right: 3 of 3 pass

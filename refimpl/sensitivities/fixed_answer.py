@@ -39,7 +39,9 @@ class Answer:
 def fixed_answer(
     scene: Scene, base: Problem, fixed: FixedContact, name: str, value: float, excess: float
 ) -> Answer:
-    """Answer to a parameter; its friction is without tau on the mean ``excess`` of the edge (m^2)."""
+    """Return the answer to a parameter; its friction is without tau on the mean ``excess`` of the edge
+    (m^2).
+    """
     (low, below), (high, above) = both_sides(
         name,
         value,

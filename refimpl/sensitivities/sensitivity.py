@@ -66,7 +66,7 @@ class Sensitivity:
     contact_stiffness: float = math.nan
 
     def relative(self, number: str, parameter: str) -> float:
-        """``(p / q) dq/dp``: the per cents that q changes by for one per cent of p.
+        """Return ``(p / q) dq/dp``: the per cents that q changes by for one per cent of p.
 
         Raises `InputError` for a number that is zero, and for a name that is none.
         """
@@ -79,7 +79,7 @@ class Sensitivity:
 
 
 def sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = None) -> Sensitivity:
-    """Derivatives of mu, A, f_max and Q by every parameter of `differentiable_parameters(scene)`.
+    """Return the derivatives of mu, A, f_max and Q by every parameter of `differentiable_parameters(scene)`.
 
     ``solution`` is the scene's own, under its load. Costs one GMRES solve a parameter, two solves on the
     solution's grid for the load and for each number of a surface, and as much on half the elements a side.

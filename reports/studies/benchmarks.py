@@ -9,6 +9,9 @@ from reports.drawing import Data, Figure, curves
 from reports.exhibit import Cell, Column, Document, Exhibit, Table, table
 
 OURS = "refimpl"
+NAMES = {OURS: "this code, error bars", "refimpl-solver": "this code, solver alone", "aspher": "ASPHER"}
+NAMES |= {"aspher+options": "ASPHER, options set", "tamaas": "Tamaas"}
+"""Names of the codes in figures."""
 Row = Mapping[str, Any]
 
 
@@ -105,9 +108,10 @@ def _seconds(kind: str, newest: Mapping[tuple[str, int], Sequence[Row]]) -> tupl
         "*",
         f"Seconds over the grid at a recomputed gap of 1e-8, {kind} flat. Threads: {threads}.",
         "M",
-        {code: code for code in codes},
+        {code: NAMES.get(code, code) for code in codes},
         xlabel="elements per side",
         ylabel="seconds",
+        height=4.6,
         log="xy",
         marker=True,
     )

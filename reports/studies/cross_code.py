@@ -6,14 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-from matplotlib import colormaps
-from matplotlib.figure import Figure as Canvas
-
-from reports.drawing import Data, Figure
 from reports.exhibit import Column, Document, Exhibit, Table, table
 
-_DECADES = 4  # decades of the figure's colours, on both sides of the tolerance
 Row = Mapping[str, Any]
 
 
@@ -36,15 +30,12 @@ ENTRANTS: dict[str, Column] = {
 
 
 def build(document: Document) -> Exhibit:
-    """Return entrants with their set-ups, verdicts case by case, and a map of error over tolerance."""
+    """Return entrants with their set-ups, and verdicts case by case."""
     entrants = [e for e in document["entrants"] if e["installed"]]
     absent = [e["version"] for e in document["entrants"] if not e["installed"]]
     cases = document["cases"]
     slugs = [str(case["id"]).partition("/")[2] for case in cases]
     found = {e["name"]: {row["id"]: row for row in e["results"]} for e in entrants}
-    shares = {
-        name: [_share(rows[case["id"]], case["metric"]) for case in cases] for name, rows in found.items()
-    }
     verdicts = [
         (slug, case["title"], *(_verdict(rows[case["id"]], case["metric"]) for rows in found.values()))
         for slug, case in zip(slugs, cases, strict=True)
@@ -62,19 +53,10 @@ def build(document: Document) -> Exhibit:
         "gap over elastic energy, load balance and tension, recomputed from the returned pressures."
     )
     caption = "Verdict and error as a share of the case's tolerance: up to 1 is a pass."
-    figure = Figure(
-        "*",
-        ("case", "share of tolerance"),
-        _map,
-        "Error over tolerance, case by case: blue within it, red beyond; grey where a code does not offer "
-        "what the case asks for, or answered nothing that could be judged.",
-        (7.4, 1.2 + 0.19 * len(cases)),
-    )
     return Exhibit(
         "Cross-code table",
         paragraphs,
         [table(overview, entrants, ENTRANTS), Table(caption, ("case", "what", *found), verdicts)],
-        [(figure, {"case": slugs, "share of tolerance": shares})],
     )
 
 
@@ -92,21 +74,3 @@ def _share(row: Row, metric: str) -> float | None:
         return None
     above, below = (tolerance, error) if metric == "at_least" else (error, tolerance)
     return above / below if below else math.inf if above else 0.0
-
-
-def _map(canvas: Canvas, data: Data) -> None:
-    """Decades from the tolerance, one column a code."""
-    names, cases = list(data["share of tolerance"]), data["case"]
-    field = np.array([data["share of tolerance"][name] for name in names], dtype=float).T
-    with np.errstate(divide="ignore"):
-        decades = np.ma.masked_invalid(np.clip(np.log10(field), -_DECADES, _DECADES))
-    axes = canvas.add_subplot()
-    colours = colormaps["RdBu_r"].with_extremes(bad="#9a9a9a")
-    image = axes.imshow(decades, cmap=colours, vmin=-_DECADES, vmax=_DECADES, aspect="auto")
-    axes.set_xticks(range(len(names)), names, rotation=30, ha="left", fontsize=8)
-    axes.xaxis.tick_top()
-    axes.set_yticks(range(len(cases)), cases, fontsize=7)
-    axes.grid(visible=False)
-    bar = canvas.colorbar(image, ax=axes, shrink=0.5, label="error over tolerance")
-    ticks = range(-_DECADES, _DECADES + 1, 2)
-    bar.set_ticks(list(ticks), labels=[f"$10^{{{k}}}$" for k in ticks])

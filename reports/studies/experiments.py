@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure as Canvas
 
-from reports.drawing import INK, Data, Figure, look
+from reports.drawing import INK, Data, Figure, below, look
 from reports.exhibit import Column, Document, Exhibit, table
 from reports.text import decimals, interval, symbols
 
@@ -36,7 +36,7 @@ INTRODUCTION = (
 
 
 def build(document: Document) -> Exhibit:
-    """Return paragraphs, a table and a figure for each experiment."""
+    """Return paragraphs and a table for each experiment, and a figure for those of several points."""
     found = document["experiments"]
     return Exhibit(
         "Experiments",
@@ -49,7 +49,7 @@ def build(document: Document) -> Exhibit:
             )
             for one in found
         ],
-        [(_figure(one), _data(one)) for one in found],
+        [(_figure(one), _data(one)) for one in found if len(one["points"]) > 1],
     )
 
 
@@ -115,7 +115,7 @@ def _figure(one: dict[str, Any]) -> Figure:
             f"ratio,\n{at}" if mixed and text else at for at, text in zip(data["at"], texts, strict=True)
         ]
         axes.set_xticks(places, [symbols(tick) for tick in ticks])
-        axes.legend()
+        below(canvas, axes)
 
     needs = ("at", "measured", "measured_half_width", "predicted", "uncertainty")
     return Figure("*", needs, draw, f"{one['title']}: {one['quantity']}, over the measured number.")

@@ -3,21 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import Any
 
-import numpy as np
-from matplotlib.figure import Figure as Canvas
-from matplotlib.patches import Patch
-
-from reports.drawing import COLOURS, INK, Data, Figure
 from reports.exhibit import Column, Document, Exhibit, Table, table
 
 VERDICTS = {"right": "right", "detected failure": "detected failure", "wrong": "wrong", "crash": "crash"}
 """Recorded verdicts, and their names here."""
-DRAWN = ("load", "contact set", "material", "friction", "topography", "grid")
-NOT_RIGHT = {"detected failure": "#b0b0b0", "wrong": COLOURS[1], "crash": COLOURS[5]}
-"""Colours of verdicts without digits."""
 
 BY_SERIES: dict[str, Column] = {
     "axis": "axis",
@@ -74,7 +65,7 @@ def sentence(document: Document) -> str:
 
 
 def build(document: Document) -> Exhibit:
-    """Return the tables of the study, and a map of the digits that results keep."""
+    """Return the tables of the study."""
     rows, counts = document["states"], document["counts"]
     found = ", ".join(f"{counts[verdict]} {name}" for verdict, name in VERDICTS.items())
     conditioning = document["conditioning"]
@@ -109,7 +100,6 @@ def build(document: Document) -> Exhibit:
                 list(zip(*(conditioning.get(name, ()) for name in CONDITIONING), strict=True)),
             ),
         ],
-        [(KEPT, {"digits kept": _kept(rows)})],
     )
 
 
@@ -136,56 +126,3 @@ def _causes(precision: dict[str, Any]) -> Table:
         for name, values in precision["digits lost"].items()
     ]
     return Table("Decimal digits lost in each arithmetic, why, and the cure.", head, rows)
-
-
-def _kept(rows: Sequence[dict[str, Any]]) -> dict[str, list[Any]]:
-    """Digits, or the verdict of what is not right, by series of the production solver."""
-    found: dict[str, list[Any]] = {}
-    for row in rows:
-        if row["axis"] in DRAWN and row["series"].endswith("fft"):
-            name = f"{row['axis']}: {row['series'].removesuffix(', fft')}"
-            right = row["verdict"] == "right"
-            found.setdefault(name, []).append(row["digits"] if right else row["verdict"])
-    return found
-
-
-def _draw_kept(canvas: Canvas, data: Data) -> None:
-    """Digits kept along each series, in colours; other verdicts apart."""
-    series = data["digits kept"]
-    columns = max(map(len, series.values()))
-    axes = canvas.add_subplot()
-    values = np.full((len(series), columns), np.nan)
-    present = set()
-    for i, states in enumerate(series.values()):
-        edges = np.linspace(0, columns, len(states) + 1).round().astype(int)
-        for state, (low, high) in zip(states, pairwise(edges), strict=True):
-            if isinstance(state, str):
-                present.add(state)
-                colour = NOT_RIGHT[state]
-                axes.axhspan(
-                    i - 0.5, i + 0.5, low / columns, high / columns, facecolor=colour, edgecolor=INK, lw=0.2
-                )
-            else:
-                values[i, low:high] = state
-    image = axes.imshow(np.ma.masked_invalid(values), cmap="viridis", vmin=0, vmax=16, aspect="auto")
-    axes.grid(visible=False)
-    axes.set_yticks(range(len(series)), list(series), fontsize=7.5)
-    axes.set_xticks([-0.5, columns - 0.5], ["first state", "last state"])
-    axes.set_xlabel("along the axis, to the end given in the table")
-    legend = [
-        Patch(facecolor=c, edgecolor=INK, label=VERDICTS[name])
-        for name, c in NOT_RIGHT.items()
-        if name in present
-    ]
-    if legend:
-        canvas.legend(handles=legend, loc="outside upper right", ncols=len(legend))
-    canvas.colorbar(image, ax=axes, label="decimal digits kept", shrink=0.6)
-
-
-KEPT = Figure(
-    "*",
-    ("digits kept",),
-    _draw_kept,
-    "Digits that results of the production solver keep along each series, against the oracle.",
-    (8.6, 7.2),
-)

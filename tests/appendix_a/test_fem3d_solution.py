@@ -63,6 +63,7 @@ def test_flat_energy_equals_scikit_fems() -> None:
     assert ours == pytest.approx(energy_by_scikit_fem(body, FLAT, field), rel=1e-12)
 
 
+@pytest.mark.nightly
 def test_wavy_energy_converges_to_curved_elements() -> None:
     """Exactly mapped and interpolated elements are two geometries of one body, O(h^3) apart at least."""
     surface = Waviness(25.0, 16.0, 0.2, Kind.EGG_BOX)

@@ -92,6 +92,7 @@ def test_waves_mirrored_and_shifted_are_the_same_waves():
         assert other == pytest.approx(wavy(0.2, near), abs=1e-9)  # conditioning 1e6 times rounding, and slack
 
 
+@pytest.mark.nightly
 def test_nearly_incompressible_wave_agrees_with_the_mixed_formulation():
     offsets, nu = np.array([-3.0, -2.0, 2.0, 4.0]), 0.4999
     found = departures(20.0, 20.0, 0.2, offsets, levels=(0, 1, 2)).result(nu)

@@ -14,7 +14,10 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq
 from scipy.special import erf
+
+from verification.exact.greenwood_tripp import overlap_integral
 
 Array = NDArray[np.float64]
 
@@ -31,6 +34,56 @@ def persson_area(reduced_pressure: ArrayLike) -> Array:
     True
     """
     return np.asarray(erf(np.sqrt(2) * np.asarray(reduced_pressure, dtype=float)))
+
+
+def persson_pressure_density(pressure: ArrayLike, mean: float) -> Array:
+    """Return the density P of Persson's contact pressure; pressures over E* h', any shape.
+
+    Full contact has the variance 1/4; a mirror image at negative pressures makes P vanish at 0.
+
+    >>> p = np.linspace(0, 5, 5001)
+    >>> bool(np.isclose(np.trapezoid(persson_pressure_density(p, 0.3), p), persson_area(0.3), atol=1e-8))
+    True
+    """
+    p = np.asarray(pressure, dtype=float)
+    return np.asarray((np.exp(-2 * (p - mean) ** 2) - np.exp(-2 * (p + mean) ** 2)) * np.sqrt(2 / np.pi))
+
+
+def persson_rms_pressure(mean: ArrayLike) -> Array:
+    """Return the rms of Persson's pressure over the whole plane; both over E* h', any shape.
+
+    >>> p = np.linspace(0, 5, 5001)
+    >>> square = np.trapezoid(p**2 * persson_pressure_density(p, 0.3), p)
+    >>> bool(np.isclose(persson_rms_pressure(0.3), np.sqrt(square), atol=1e-8))
+    True
+    """
+    m = np.asarray(mean, dtype=float)
+    square = (0.25 + m**2) * persson_area(m) + m * np.exp(-2 * m**2) / np.sqrt(2 * np.pi)
+    return np.asarray(np.sqrt(square))
+
+
+def greenwood_williamson_area(
+    pressure: ArrayLike, rms: float, density: float, radius: float
+) -> Array:
+    """Return A/A0 of summits that do not interact, at ``pressure`` over E*, any shape.
+
+    ``p/E* = (4/3) eta R^(1/2) sigma^(3/2) F_3/2(d/sigma)``, ``A/A0 = pi eta R sigma F_1(d/sigma)``, with the
+    rms height sigma (m), density eta (1/m^2) and tip radius R (m) of the summits (`gaussian_summits`).
+    Greenwood and Williamson 1966.
+
+    >>> p = 4 / 3 * 1e9 * 1e-4**0.5 * 1e-7**1.5 * overlap_integral(np.array(0.0), 1.5)  # d = 0
+    >>> bool(np.isclose(greenwood_williamson_area(p, 1e-7, 1e9, 1e-4), np.sqrt(np.pi / 2) * 1e-2))
+    True
+    """
+    stiff = 4 / 3 * density * radius**0.5 * rms**1.5
+
+    def area(p: float) -> float:
+        z = brentq(lambda z: float(stiff * overlap_integral(np.array(z), 1.5)) / p - 1, -10, 12, xtol=1e-12)
+        share = overlap_integral(np.array(z), 1.0)
+        return float(np.pi * density * radius * rms * share)
+
+    areas: Array = np.vectorize(area, otypes=[float])(np.asarray(pressure, dtype=float))
+    return areas
 
 
 def kappa(area_fraction: ArrayLike, pressure: ArrayLike, modulus: float, rms_gradient: float) -> Array:

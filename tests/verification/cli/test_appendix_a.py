@@ -20,7 +20,7 @@ PIXELS = "--unit um --pixel-size 1e-6"
 
 def test_fem_prints_the_four_keys_and_agrees_with_the_strip_on_a_gentle_slope() -> None:
     """On a terminal, finite elements show their progress."""
-    wave = "--slope-deg 0.5 --wavelength 50 --position 0.25 --nu 0.3 --offsets=-3,3 --json -"
+    wave = "--slope-deg 0.5 --wavelength 20 --position 0.25 --nu 0.3 --offsets=-3,3 --json -"
     done = {problem: run(f"appendix-a {problem} {wave}", terminal=True) for problem in ("strip", "fem")}
     assert "[5/5] finite elements" in done["fem"].err
     found = {problem: json.loads(one.out) for problem, one in done.items()}

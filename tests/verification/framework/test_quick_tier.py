@@ -13,8 +13,8 @@ from verification.framework.case import Case, Status, Tier
 QUICK = registry.select(registry.load(), Tier.QUICK)
 BY_MODULE = {name: list(cases) for name, cases in groupby(QUICK, key=lambda case: case.module)}
 
-LONG = {"beyond_yield": 16}
-"""Modules that `make nightly` and `make report` run, with their seconds."""
+LONG = {"beyond_yield": 16, "capped_sphere": 14, "scheme": 13, "wedge": 10, "cross_check": 6}
+"""Modules that `make nightly` and `make report` run, with their seconds; their subjects have other tests."""
 
 
 def _marked(module: str, cases: list[Case]) -> ParameterSet:

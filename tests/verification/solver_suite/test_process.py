@@ -158,9 +158,9 @@ def judged(name: str, timeout: float = 60.0) -> list[Result]:
     [
         ("exits", "the solver's process died (exit status 0)"),
         ("hangs", "no answer within 9.5 s"),
-        ("writes", OTHER),
-        ("shuts", "the solver's process died ("),
-        ("promises", "no answer within 9.5 s"),
+        pytest.param("writes", OTHER, marks=pytest.mark.nightly),
+        pytest.param("shuts", "the solver's process died (", marks=pytest.mark.nightly),
+        pytest.param("promises", "no answer within 9.5 s", marks=pytest.mark.nightly),
         ("answers_another", OTHER),
     ],
 )
@@ -223,7 +223,10 @@ def test_somebody_elses_child_is_left_alone(folder: Path) -> None:
         os.waitpid(other, 0)
 
 
-@pytest.mark.parametrize(("how", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, -signal.SIGTERM)])
+@pytest.mark.parametrize(
+    ("how", "status"),
+    [(signal.SIGINT, 130), pytest.param(signal.SIGTERM, -signal.SIGTERM, marks=pytest.mark.nightly)],
+)
 def test_an_interrupted_run_shows_and_writes_what_is_judged_so_far(
     folder: Path, how: signal.Signals, status: int
 ) -> None:
@@ -277,10 +280,12 @@ def test_bytes_that_are_no_frame(sent: bytes) -> None:
 @pytest.mark.parametrize(
     ("solver", "how"),
     [
-        (["--exec", SLEEPER], signal.SIGINT),
-        (["--exec", SLEEPER], signal.SIGTERM),
+        *(
+            pytest.param(["--exec", SLEEPER], how, marks=pytest.mark.nightly)
+            for how in (signal.SIGINT, signal.SIGTERM)
+        ),
         (["--exec", SLEEPER], signal.SIGKILL),
-        (["--solver", "sleeper:solve"], signal.SIGHUP),
+        pytest.param(["--solver", "sleeper:solve"], signal.SIGHUP, marks=pytest.mark.nightly),
     ],
 )
 def test_a_run_that_is_ended_takes_the_solver_with_it(
