@@ -11,7 +11,7 @@ import numpy as np
 import refimpl as rf
 from refimpl.model.materials import Pair
 from verification.coverage.drawing import SIDE, Ball, Dice, Wave, measured_like
-from verification.coverage.textures import Profile, RoundedPunch, Spots
+from verification.coverage.textures import Pads, Profile, RoundedPunch
 
 RMS = 1e-7  # m
 GRIDS = 48, 64, 96, 128  # elements along the longer side of the grids that are judged
