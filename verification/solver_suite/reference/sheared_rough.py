@@ -11,7 +11,7 @@ for elements without tau decides where the edge alternates; the other numbers fo
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import refimpl as rf
 from verification.output.result_files import write_result
@@ -31,7 +31,7 @@ def scene(seed: int) -> rf.Scene:
     return rf.Scene(rf.Body(STEEL, rf.Sphere(RADIUS)), rf.Body(COPPER, rough), LAW, LOAD, SIDE)
 
 
-def entry(seed: int, method: str = "dense") -> dict[str, Any]:
+def entry(seed: int, method: Literal["dense", "fft"] = "dense") -> dict[str, Any]:
     """Problem and answer: heights (m, upwards), pressure and traction (Pa), the mask of tau, numbers (SI).
 
     Row i along x, the direction of sliding of the upper body, column j along y.
