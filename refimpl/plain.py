@@ -69,7 +69,7 @@ class Model(SimpleNamespace):
         self.dA = self.spacing[0] * self.spacing[1]
         gap = (self.z_upper - self.z_lower).ravel()
         self.h = gap - gap.min()
-        self.datum = self.h.mean() if self.periodic else 0.0  # of the approach: mean planes, or first contact
+        self.datum = self.h.mean() if self.periodic else 0.0  # approach 0: mean planes, or first contact
         self.J, self.Js, self.Jt = integrals(self.shape, self.spacing, self.direction, self.periodic)
         self.a_of = [(1 - nu**2) / (np.pi * E) for E, nu in (self.lower, self.upper)]
         self.c_of = [(1 + nu) * (1 - 2 * nu) / (2 * np.pi * E) for E, nu in (self.lower, self.upper)]

@@ -26,8 +26,8 @@ _EPS = float(np.finfo(float).eps)
 # rounding of Eq. (7) on n elements, over sqrt(n) eps times the displacement by the peak pressure on the whole
 # domain; measured on flat periodic planes, 2 to 32 elements a side, dense sums: 0.3 to 0.7
 _ROUNDING = 2.0
-# the same beside other gaps, over eps times that displacement; measured on rough periodic planes at 1 and 100
-# times the modulus, 3 to 256 elements a side by FFT: 0.1 to 2.6, 3 to 32 by dense sums: 0.6 to 1.9
+# rounding of Eq. (7) beside other gaps, over eps times that displacement; measured on rough periodic planes
+# at 1 and 100 times the modulus: 0.1 to 2.6 by FFT (3 to 256 elements a side), 0.6 to 1.9 by dense sums
 _MEAN_ROUNDING = 4.0
 _SHEAR_ROUNDING = 4.0  # rounding of a shear product over eps times that of single elements
 _MOST_ROUNDING = 1e-6  # over the displacement by an element's peak pressure: spoilt by as much it must fail

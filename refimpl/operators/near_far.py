@@ -53,14 +53,14 @@ from refimpl.operators.split_kernels import COARSER, REACH, WIDTH, far_quarter, 
 Quarter = Callable[[str, Shape], Array]
 """A kernel at the offsets from 0 to half of each circle, in elements of edge one."""
 
-ERROR = 1e-11  # of the largest displacement, at most (a test)
-TOLERANCE = 1e-9  # of a solve, from which such products serve
+ERROR = 1e-11  # share of the largest displacement, at most (a test)
+TOLERANCE = 1e-9  # least tolerance of a solve that such products serve
 _CELLS = 8  # cells of the coarse grid in a block
 _LEAST = 240  # elements per side of a window from which they are quicker
 
 
 def is_quicker(grid: Grid, window: Window, tolerance: float) -> bool:
-    """Whether near and far parts serve a window's products, and are quicker than the whole kernel."""
+    """Return whether near and far parts serve a window's products, and are quicker than the whole kernel."""
     return tolerance >= TOLERANCE and grid.aspect == 1 and min(window.shape) >= _LEAST
 
 

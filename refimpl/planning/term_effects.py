@@ -78,8 +78,8 @@ class Scales:
 
     @property
     def frictionless(self) -> bool:
-        """True if no shear acts."""
-        return is_frictionless(self.friction)
+        """True if no shear acts, or less than a double holds over the pressure."""
+        return is_frictionless(self.friction) or self.mu == 0
 
     @property
     def mu(self) -> float:

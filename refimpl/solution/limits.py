@@ -18,6 +18,7 @@ from refimpl.model.slopes import Slopes
 from refimpl.planning.terms import LABELS
 from refimpl.scene.resolution import resolution
 from refimpl.scene.scene import Body, Scene
+from refimpl.solution.cause_of_failure import cause_of_failure
 from refimpl.solution.evidence import Evidence
 from refimpl.surfaces import Flat, Sphere
 from refimpl.surfaces.statistics import rms_slopes
@@ -87,10 +88,16 @@ def plain_warning(text: str) -> dict[str, Any]:
 
 
 def model_warnings(evidence: Evidence) -> tuple[ModelWarning | Notice, ...]:
-    """Return a warning for every limit that a solution exceeds, and notes on yield; none without contact."""
+    """Return a warning for every limit that a solution exceeds, and notes on yield; none without contact.
+
+    The first names why a solve did not converge, if that is known.
+    """
+    cause = cause_of_failure(evidence)
+    first = () if cause is None else (Notice(cause),)
     if not evidence.state.contact.any():
-        return ()
+        return first
     found = (
+        *first,
         _plasticity(evidence),
         _hardness(evidence),
         _shear(evidence),

@@ -43,8 +43,8 @@ _LEAST_RATIO = 0.01  # least shear compliance in the reach, over the normal one:
 _LEAST_REACH = 1e-200  # m; a clearance over it is a double
 _MOST_EXCLUDED = 0.5  # share of the contact; reached where tau is two to three times p_max
 _LIFT_MARGIN = 1.4  # over the first-order estimate of the pressure that tau on excluded elements takes away
-_LEAST_EXCLUDED = 0.02  # least pressure of an excluded element, over stiffness times reach. With both, 19
-#                         of 61 states of 230 random scenes (128 x 128) are tried, and 7 of them succeed
+_LEAST_EXCLUDED = 0.02  # least pressure of an excluded element, over stiffness times reach; with both,
+#                         19 of 61 states of 230 random scenes (128 x 128) are tried, and 7 of them succeed
 _ACTIVE_SETS = 200  # limit of the loop
 _MOST_STAGNATED = 3  # solves in a row that do not converge: their contact sets are not the rule's
 
@@ -57,7 +57,7 @@ class ActiveSet(Protocol):
 
     @property
     def is_fixed(self) -> bool:
-        """Whether shares of tau do not depend on the state."""
+        """Return whether shares of tau do not depend on the state."""
 
     def traction(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
         """Return r (Pa)."""
@@ -129,15 +129,15 @@ class TauSolver(Protocol):
 
     @property
     def stagnated(self) -> bool:
-        """Whether the last solve did not converge."""
+        """Return whether the last solve did not converge."""
 
     @property
     def exhausted(self) -> bool:
-        """Whether no further solve is worthwhile: slopes diverged, or the solver's budget is spent."""
+        """Return whether no further solve is worthwhile: slopes diverged, or the solver's budget is spent."""
 
     @property
     def window_too_small(self) -> bool:
-        """Whether the contact meets the edge of the solver's window."""
+        """Return whether the contact meets the edge of the solver's window."""
 
     @property
     def contact(self) -> Mask:

@@ -19,6 +19,7 @@ from refimpl.model.certificate import (
 )
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
+from refimpl.operators.influence import whole_grid_influence
 from refimpl.planning.plan import Method
 from refimpl.scene.discretise import discretise
 from tests.refimpl.solvers.production.levels import BALL
@@ -278,3 +279,24 @@ def test_slopes_without_the_indentation_are_not_those_of_the_common_surface() ->
     # the indented surfaces touch: an element's slopes count in Eq. (6), by 1e-6 of 1 um and more here
     assert with_it.plastic.sum() > 3
     assert np.abs(with_it.gap[with_it.contact]).max() < 1e-10 * with_it.approach
+
+
+@pytest.mark.parametrize("times", [1.0, 100.0])
+@pytest.mark.parametrize("method", ["fft", "dense"])
+def test_rounding_of_a_mean_pressure_passes_and_spoilt_pressures_do_not(times: float, method: Method) -> None:
+    """Full periodic contact above the modulus: its energy does not grow with the mean pressure."""
+    pair = rf.Material(200e9, 0.3), rf.Material(3e9, 0.4)
+    wave = np.cos(2 * np.pi * np.arange(5) / 5)
+    waves = rf.Body(pair[1], 5e-7 * np.add.outer(wave, wave))
+    flat = rf.Scene(rf.Body(pair[0], rf.Flat()), waves, rf.Friction(beta=0.1), 1.0, 1e-3, periodic=True)
+    pressed = replace(flat, load=times * flat.materials.reduced_modulus * 1e-6)
+    found = rf.solve(pressed, 5, method=method, tolerance=1e-10)
+    assert found.status is rf.Status.CONVERGED
+    assert found.certificate.gap <= found.certificate.gap_rounding
+    problem = found.details.problem
+    spoilt = found.pressure.copy()
+    spoilt[2, 3] += 1e-6 * found.max_pressure
+    operator = whole_grid_influence(problem.grid, problem.direction, problem.grid.window)
+    traction = problem.friction.traction(spoilt, spoilt > 0)
+    judged = certify(problem, operator, spoilt, traction, found.slopes).certificate
+    assert not judged.satisfies(1e-10)

@@ -49,6 +49,18 @@ def test_the_preconditioner_is_symmetric_and_positive(shape: tuple[int, int], dy
     assert np.linalg.eigvalsh(found).min() > 0
 
 
+@pytest.mark.parametrize("size", [1e-200, 1e9])
+def test_single_precision_on_large_windows(size: float) -> None:
+    """Transforms of n points are wrong by about eps log2(n), in units of any size."""
+    operator = on(200, 210)
+    residual = size * np.random.default_rng(5).standard_normal((200, 210))
+    spectrum = np.fft.rfft2(residual, s=operator.circle[::-1], axes=(1, 0)) / (COMPLIANCE * operator.symbol)
+    expected = np.fft.irfft2(spectrum, s=operator.circle[::-1], axes=(1, 0))[:200, :210]
+    found = spectral(operator)(residual)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=16 * 2.0**-24 * np.abs(expected).max())
+    assert not np.allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+
+
 @pytest.mark.parametrize("aspect", [0.1, 1.0, 2.5])
 @pytest.mark.parametrize("shape", [(7, 5), (1, 81), (2, 130)])
 def test_symbols_are_positive(shape: tuple[int, int], aspect: float) -> None:

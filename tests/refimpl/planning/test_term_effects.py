@@ -143,3 +143,9 @@ def test_memory_is_of_the_grid_or_of_a_window_half_as_large_again() -> None:
     grid = rf.Grid((10, 20), (1.0, 2.0))
     found = [estimated_memory("fft", grid, extent=share) / 200 for share in (0.1, 0.4, 0.9)]
     assert found == [176, 0.6 * 520, 520]
+
+
+def test_less_shear_than_a_double_holds_is_none() -> None:
+    least = rf.Friction(tau=5e-324)
+    assert Scales(CONTACT, PAIR, least).frictionless
+    assert rf.solve(replace(SCENE, friction=least), 6).status is rf.Status.CONVERGED
