@@ -28,12 +28,12 @@ KEY = "key of recorded results"
 FAULT = "name of a fault in recorded results"
 
 EXCEPTIONS: dict[tuple[str, str], str] = {
-    ("reports/reproduction_figures.py", "summits"): SUMMITS,
     ("reports/studies/benchmarks.py", "seconds again"): KEY,
     ("verification/benchmarks/summary.py", "seconds again"): KEY,
     ("verification/cases/contact/rough_planes.py", "summit"): SUMMITS,
     ("verification/cases/contact/rough_planes.py", "summits"): SUMMITS,
     ("verification/solver_suite/check.py", "left out"): FAULT,
+    ("refimpl/solution/rough_contact.py", "summits"): SUMMITS,
     ("verification/cases/contact/rough_theories.py", "summits"): SUMMITS,
     ("verification/exact/rough_plane.py", "summits"): SUMMITS,
     ("verification/exact/greenwood_tripp.py", "summit"): SUMMITS,

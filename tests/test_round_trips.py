@@ -55,6 +55,7 @@ KNOWN = {
     ("MeasuredSurface", "unit"): st.sampled_from(["m", "mm", "um", "nm"]),
     ("MeasuredSurface", "pixel_size"): st.tuples(LENGTHS, LENGTHS),
     ("MeasuredSurface", "outliers"): st.floats(3.0, 9.0),
+    ("MeasuredSurface", "scan_lines"): st.sampled_from(["x", "y"]),
     ("MeasuredSurface", "low_pass"): st.floats(1e-6, 2e-6),
     ("MeasuredSurface", "high_pass"): st.floats(3e-6, 9e-6),
     ("MeasuredSurface", "level"): st.sampled_from(["none", "mean"]),

@@ -140,8 +140,10 @@ class Grid:
         return scale * self.shape[0], scale * self.shape[1]
 
     def transform_shape_near(self, where: Mask) -> tuple[int, int]:
-        """Shape of a transform of which only the marked elements are wanted, the sources of most: an empty
-        margin of their own size."""
+        """Return the shape of a transform of which only the marked elements are wanted, the sources of most.
+
+        It has an empty margin of their own size.
+        """
         if self.periodic:
             return self.shape
         nx, ny = Window.around(where, margin=0).shape

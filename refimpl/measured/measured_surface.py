@@ -31,8 +31,9 @@ _ALLOWED_FRACTION = "a fraction, 0 <= max_missing < 1"
 class MeasuredSurface(Surface):
     """Measured heights from a file (which: ``readers.read``), treated in this order:
 
-    1. outliers and wavelengths (``preparation.prepare``): points further than ``outliers`` spreads from the
-       median of their neighbours become missing; ``low_pass`` and ``high_pass`` (m) filter the whole map;
+    1. outliers, scan lines, wavelengths (``preparation.prepare``): points further than ``outliers`` spreads
+       from the median of their neighbours become missing; lines along ``scan_lines``, ``"x"`` or ``"y"`` of
+       the file, are levelled one by one; ``low_pass`` and ``high_pass`` (m) filter the whole map;
     2. orientation: heights point out of the material, x to the right and y up as seen from outside.
        ``replica=True`` negates them; ``mirror="x"`` or ``"y"`` mirrors (x -> -x, y -> -y); ``rotate_deg``
        (0, 90, 180, 270) turns them anticlockwise; ``turn_over`` turns the specimen over about the x axis,
@@ -60,6 +61,7 @@ class MeasuredSurface(Surface):
     pixel_size: float | tuple[float, float] | None = field(default=None, kw_only=True)
     channel: str | int | None = field(default=None, kw_only=True)
     outliers: float | None = field(default=None, kw_only=True)
+    scan_lines: str | None = field(default=None, kw_only=True)
     low_pass: float | None = field(default=None, kw_only=True)
     high_pass: float | None = field(default=None, kw_only=True)
     level: str | int | None = field(default=None, kw_only=True)
@@ -90,7 +92,7 @@ class MeasuredSurface(Surface):
             object.__setattr__(self, "level", "mean" if self.repeats else "plane")
         positive("height_scale", self.height_scale, "a positive factor on heights (z calibration)")
         check_level(self.level, self.repeats)
-        check_preparation(self.channel, self.outliers, self.low_pass, self.high_pass)
+        check_preparation(self.channel, self.outliers, self.scan_lines, self.low_pass, self.high_pass)
         check_orientation(self.mirror, self.rotate_deg, self.turn_over)
         object.__setattr__(self, "rotate_deg", int(self.rotate_deg))
         if self.centre is not None:
@@ -118,7 +120,8 @@ class MeasuredSurface(Surface):
     @cached_property
     def prepared(self) -> RawHeights:
         """The map without outliers and with its wavelengths filtered."""
-        return prepare(self.reading, self.outliers, self.low_pass, self.high_pass, self.repeats)
+        filters = self.low_pass, self.high_pass, self.repeats
+        return prepare(self.reading, self.outliers, *filters, self.scan_lines)
 
     @cached_property
     def _oriented(self) -> Oriented:

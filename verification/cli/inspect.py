@@ -30,6 +30,9 @@ EPILOG = """examples:
 --fit prints a surface for a scene file, with standard deviations; another seed is another specimen.
 """
 SCALES = ((1.0, "m"), (1e-3, "mm"), (1e-6, "um"), (1e-9, "nm"), (0.0, "pm"))
+KEYS = (
+    "unit", "pixel_size", "channel", "level", "outliers", "scan_lines", "low_pass", "high_pass", "centre",
+)  # fmt: skip
 
 OPTIONS: Options = {
     "file": option("an instrument's file, .npy, .csv, .txt, .xyz ...", metavar="FILE"),
@@ -41,6 +44,7 @@ OPTIONS: Options = {
         type=name_or_number,
     ),
     "--outliers": option("drop points K spreads off their neighbours", metavar="K", type=float),
+    "--scan-lines": option("level each line along this axis", choices=("x", "y")),
     "--low-pass": option("damp wavelengths below L (m)", metavar="L", type=float),
     "--high-pass": option("damp wavelengths above L (m)", metavar="L", type=float),
     "--centre": option("middle of the window (m); needs --size", metavar="X,Y", type=one_or_two_lengths),
@@ -62,8 +66,7 @@ def run(options: argparse.Namespace) -> int:
 
     check_suffix("--plot", options.plot, PICTURES)
     check_outputs([Path(options.file)], plot=options.plot, json=options.json)
-    names = ("unit", "pixel_size", "channel", "level", "outliers", "low_pass", "high_pass", "centre")
-    keys = {name: value for name in names if (value := getattr(options, name)) is not None}
+    keys = {name: value for name in KEYS if (value := getattr(options, name)) is not None}
     with StatusLine() as line:
         line.show(f"{options.file}: reading")
         found = inspect_surface(options.file, size=options.size, **keys)

@@ -72,7 +72,7 @@ OPTIONS: Options = {
     ),
     "--by": option("with --plot: column that distinguishes the curves", metavar="COLUMN"),
     "--keep-going": option(
-        "leave out files that cannot be used; rows of these and of failed runs have the status FAILED and "
+        "skip files that cannot be used; rows of these and of failed runs have the status FAILED and "
         "the reason in place of warnings",
         action="store_true",
     ),
@@ -96,8 +96,8 @@ def run(options: argparse.Namespace) -> int:
     _check_suffixes(store=options.store, **written)
     if options.scheduler is None:  # a cluster's memory is not this machine's
         posable.check_memory(study)
-    left_out = (f"left out: {reason}" for reason in study.unusable.values())
-    for note in (*study.notes, *left_out, *directions_note(study)):
+    skipped = (f"skipped: {reason}" for reason in study.unusable.values())
+    for note in (*study.notes, *skipped, *directions_note(study)):
         print(f"rough-friction sweep: {note}", file=sys.stderr)
     line = _Line()
     try:
@@ -116,7 +116,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def failed_rows(study: Study, done: Sweep) -> list[Row]:
-    """Return a row for each run that failed and each file that was left out: its inputs and the reason."""
+    """Return a row for each run that failed and each file that was skipped: its inputs and the reason."""
     runs = {run.key: run for run in study.runs()} if done.failures else {}
     failed = [
         {"key": key, **runs[key].coordinates, "status": FAILED, "warnings": reason}

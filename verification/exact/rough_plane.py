@@ -82,7 +82,8 @@ def greenwood_williamson_area(
         share = overlap_integral(np.array(z), 1.0)
         return float(np.pi * density * radius * rms * share)
 
-    return np.vectorize(area, otypes=[float])(np.asarray(pressure, dtype=float))
+    areas: Array = np.vectorize(area, otypes=[float])(np.asarray(pressure, dtype=float))
+    return areas
 
 
 def kappa(area_fraction: ArrayLike, pressure: ArrayLike, modulus: float, rms_gradient: float) -> Array:

@@ -26,7 +26,7 @@ SOLVE_KEYS = ("method", "oblique", "slope_correction", "tolerance", "accuracy", 
 def read_study(path: str | Path, *, keep_going: bool = False) -> Study:
     """The study of a TOML file, or a shipped study by its name (see `shipped_studies`).
 
-    With ``keep_going``, varied files that cannot be used are left out, and listed in ``unusable``.
+    With ``keep_going``, varied files that cannot be used are skipped, and listed in ``unusable``.
     The scene is a shipped one's name or a path relative to the file. Raises InputError naming the field.
     """
     path = Path(path)
