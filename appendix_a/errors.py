@@ -28,7 +28,7 @@ class InputError(ValueError):
 
 
 def real(value: object) -> float:
-    """The number as a double; NaN, which no range holds, for anything that is no real number.
+    """Return the number as a double; NaN, which no range holds, for anything that is no real number.
 
     >>> real(3), real("3"), real(True), real(None)
     (3.0, nan, nan, nan)
@@ -43,7 +43,7 @@ def real(value: object) -> float:
 
 
 def reals(field: str, values: object, allowed: str) -> NDArray[np.float64]:
-    """Numbers of any shape as doubles. Raises InputError for texts, truths, ragged lists and the like.
+    """Return numbers of any shape as doubles. Raises InputError for texts, truths, ragged lists and the like.
 
     >>> reals("offsets", [1, 2.5], "a list of numbers")
     array([1. , 2.5])

@@ -24,7 +24,7 @@ OCTANTS = 8  # octants of the loaded element; 1/rho in polar coordinates with NE
 
 
 def neighbours(reach: int) -> list[tuple[int, int]]:
-    """Offsets (i, j) in elements, up to `reach` along either axis, the element itself among them.
+    """Return offsets (i, j) in elements, up to `reach` along either axis, the element itself among them.
 
     >>> len(neighbours(1))
     9
@@ -34,7 +34,8 @@ def neighbours(reach: int) -> list[tuple[int, int]]:
 
 
 def facet_coefficient(tan_x: Array, tan_y: Array, nu: float, offset: tuple[int, int]) -> Array:
-    """Downward displacement (n,) at the centre of the element `offset` away, E = 1, unit pressure, a = 1.
+    """Return the downward displacement (n,) at the centre of the element `offset` away, E = 1, unit
+    pressure, a = 1.
 
     tan_x, tan_y: gradients (n,) of the loaded element's plane, heights outwards from the body; its
     projection is a square of edge 2 a. For another edge and modulus multiply by a / E.

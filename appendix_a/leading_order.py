@@ -27,12 +27,12 @@ Array = NDArray[np.float64]
 
 
 def coupling(nu: float) -> float:
-    """(1 + nu)(1 - 2 nu), twice the normal shift per tangential force (E = 1); 0 if incompressible."""
+    """Return (1 + nu)(1 - 2 nu), twice the normal shift per tangential force (E = 1); 0 if incompressible."""
     return (1.0 + nu) * (1.0 - 2.0 * nu)
 
 
 def first_order(height: Callable[[Array], Array], offsets: Array, nu: float) -> Array:
-    """First-order part (m,) of rough minus flat u(x) - u(0), in units of p a / E.
+    """Return the first-order part (m,) of rough minus flat u(x) - u(0), in units of p a / E.
 
     height: profile s(x), into the body; offsets: (m,) horizontal distances from the strip's centre; in a.
 
@@ -45,7 +45,7 @@ def first_order(height: Callable[[Array], Array], offsets: Array, nu: float) -> 
 def facet_prediction(
     offsets: Array, nu: float, slope_deg: float, *, half_width: float | None = None
 ) -> Array:
-    """u(x) - u(0) (m,) of a flat half-plane under the facet's exact tractions, in units of p a / E.
+    """Return u(x) - u(0) (m,) of a flat half-plane under the facet's exact tractions, in units of p a / E.
 
     A facet under pressure p passes, per projected area, p down and p tan(slope) uphill (+x is downhill).
     `half_width` is that of the loaded projection, cos(slope) by default: with it the prediction is exact
@@ -57,7 +57,8 @@ def facet_prediction(
 
 
 def plane_slope(offsets: Array, nu: float, slope_deg: float) -> Array:
-    """Exact u(x) - u(0) (m,) on an infinite plane at `slope_deg`: the flat solution in the plane's own frame.
+    """Return the exact u(x) - u(0) (m,) on an infinite plane at `slope_deg`: the flat solution in the
+    plane's own frame.
 
     Along the slope the offset is x / cos; vertical is cos times the normal plus sin times the downhill part.
     """
@@ -68,7 +69,8 @@ def plane_slope(offsets: Array, nu: float, slope_deg: float) -> Array:
 
 
 def slope_of_error(offset: float, nu: float, error: float = 0.02) -> float:
-    """Slope (degrees) where the first-order error is the fraction `error` of the flat coefficient there.
+    """Return the slope (degrees) where the first-order error is the fraction `error` of the flat coefficient
+    there.
 
     >>> round(slope_of_error(2.0, 0.3), 1)  # the next element
     4.2

@@ -33,7 +33,7 @@ APEX = 1e-15
 def relative_difference(
     x_over_a: ArrayLike, gamma: float, nu: float, *, half_base: float = 10.0, datum: float = 100.0
 ) -> Real:
-    """(tip - flat) / flat of the displacements normal to the mean plane at surface points x / a.
+    """Return (tip - flat) / flat of the displacements normal to the mean plane at surface points x / a.
 
     ``gamma`` (rad) is the faces' slope, ``half_base`` half the tip's width and ``datum`` the surface point
     where both displacements are zero, in units of a; at ``x = datum`` the result is NaN. ``datum = 0``
@@ -51,7 +51,9 @@ def relative_difference(
 
 
 def tip_displacement(x: ArrayLike, gamma: float, nu: float, *, half_base: float, datum: float) -> Real:
-    """Displacements of the surface at x into the body, relative to x = datum, in p a / E (plane strain)."""
+    """Return displacements of the surface at x into the body, relative to x = datum, in p a / E (plane
+    strain).
+    """
     if not 0 <= real(gamma) < np.pi / 2:
         raise InputError("gamma", gamma, "a slope angle in [0, pi/2) rad")
     if not real(half_base) > 1:
@@ -65,7 +67,9 @@ def tip_displacement(x: ArrayLike, gamma: float, nu: float, *, half_base: float,
 
 
 def base_tractions(x: ArrayLike, gamma: float, half_base: float) -> tuple[Real, Real]:
-    """Tractions (along x, into the half-space) of the infinite wedge on the base at x, per unit pressure."""
+    """Return the tractions (along x, into the half-space) of the infinite wedge on the base at x, per unit
+    pressure.
+    """
     x = np.asarray(x, dtype=float)
     depth = half_base * np.tan(gamma)
     theta = np.arctan2(x, depth)
@@ -100,7 +104,7 @@ def _half_space(x: float, gamma: float, nu: float, half_base: float) -> float:
 
 
 def graded_nodes(centres: list[float], end: float) -> tuple[Real, Real]:
-    """Gauss nodes and weights on (0, end), on panels that shrink towards ``centres``."""
+    """Return Gauss nodes and weights on (0, end), on panels that shrink towards ``centres``."""
     halves = end * 2.0 ** np.arange(0, -FINEST, -1)
     graded = [c + side * halves for c in centres for side in (-1, 1)]
     edges = np.concatenate([*graded, [0.0, end, *centres]])

@@ -28,9 +28,9 @@ STATED = {
         half: A/A0 = 0.500 in x, 0.706 in x and y
     """,
     "ball_on_rough_flat": """
-        mu = 0.1056 on 64 x 64, converged
+        mu = 0.1057 on 64 x 64, converged
         fine mu = 0.1064, within the bar: True
-        A = 0.1243 mm^2 in 27 patches
+        A = 0.1250 mm^2 in 27 patches
     """,
     "checking_a_solver": """
         right: 3 of 3 pass

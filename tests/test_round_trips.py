@@ -55,6 +55,7 @@ KNOWN = {
     ("MeasuredSurface", "unit"): st.sampled_from(["m", "mm", "um", "nm"]),
     ("MeasuredSurface", "pixel_size"): st.tuples(LENGTHS, LENGTHS),
     ("MeasuredSurface", "outliers"): st.floats(3.0, 9.0),
+    ("MeasuredSurface", "scan_lines"): st.sampled_from(["x", "y"]),
     ("MeasuredSurface", "low_pass"): st.floats(1e-6, 2e-6),
     ("MeasuredSurface", "high_pass"): st.floats(3e-6, 9e-6),
     ("MeasuredSurface", "level"): st.sampled_from(["none", "mean"]),
@@ -62,6 +63,7 @@ KNOWN = {
     ("MeasuredSurface", "max_missing"): SHARES.filter(lambda share: share != 0.05),
     ("MeasuredSurface", "mirror"): st.sampled_from(["x", "y"]),
     ("MeasuredSurface", "rotate_deg"): st.sampled_from([90, 180, 270]),
+    ("MeasuredSurface", "height_scale"): st.floats(0.9, 0.99),
     ("MeasuredSurface", "centre"): st.tuples(LENGTHS, LENGTHS),
     ("Material", "E"): st.floats(1e6, 1e12),
     ("Material", "nu"): SHARES,
@@ -126,17 +128,18 @@ def test_solves_of_a_store(tmp_path_factory: pytest.TempPathFactory, made: list[
 
 def test_rows_of_a_sweep(tmp_path: Path) -> None:
     """Every column a value of its own: one that stands in another's place is seen."""
-    coordinates = {name: 2.5 + k for k, name in enumerate(COORDINATES)}
+    coordinates: dict[str, float | str] = {name: 2.5 + k for k, name in enumerate(COORDINATES)}
+    coordinates |= {"parameters": '{"lower.material.nu": 0.25}'}
     outcomes = {name: -1.0 / (3 + k) for k, name in enumerate(OUTCOMES)} | {"status": "stagnated"}
     run = Run(coordinates, {"grid": 8, "scene": {"load": 1.5}})
     with open_store(tmp_path / "s.sqlite") as store:
         store.add(run, outcomes, 12.25)
     with open_store(tmp_path / "s.sqlite") as store:
         ((row, seconds),) = store.finished([run])
-    expected = {"key": run.key, **coordinates, **outcomes}
+    expected: dict[str, object] = {"key": run.key, **coordinates, **outcomes}
     assert (row, seconds) == (expected, 12.25)
     (read,) = csv.DictReader(io.StringIO(to_csv([row])))
-    for name, value in expected.items():
+    for name, value in (expected | {"lower.material.nu": 0.25}).items():
         assert read[header(name)] == str(value), name
 
 

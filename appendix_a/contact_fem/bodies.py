@@ -43,7 +43,7 @@ class MeshPlan:
     depth: float = 1.5
 
     def reference(self) -> MeshTri:
-        """Triangles over xi in [-1, 1] (one wavelength) and eta in [0, 1], mirror symmetric in xi."""
+        """Return triangles over xi in [-1, 1] (one wavelength) and eta in [0, 1], mirror symmetric in xi."""
         size, reach = 2.0 / self.cells, 2.0 * self.zone
         sources = [Source(-reach, reach, size, 1.0), Source(-1.0, 1.0, 1.0 / 8.0, 1.0)]
         sources += [Source(2.0 * m, 2.0 * m, size / FINER, 0.5) for mark in self.marks for m in (-mark, mark)]
@@ -73,7 +73,7 @@ def wavy_surface(
     straight: bool = False,
     harmonics: Harmonics = (),
 ) -> Surface:
-    """Surface of a body with a sinusoidal profile whose asperity has its top at x = `crest`.
+    """Return the surface of a body with a sinusoidal profile whose asperity has its top at x = `crest`.
 
     `harmonics` add shorter waves: `amplitude share cos(order k (x - crest) + phase)` each.
 
@@ -110,7 +110,9 @@ def _unit_surface(
 
 
 def wave_height(x: Array, amplitude: float, harmonics: Harmonics = ()) -> Array:
-    """Height above the mean plane, out of the body, at distances x from the crest (wavelengths)."""
+    """Return the height above the mean plane, out of the body, at distances x from the crest
+    (wavelengths).
+    """
     waves = np.cos(WAVENUMBER * x)
     for order, share, phase in harmonics:
         waves = waves + share * np.cos(order * WAVENUMBER * x + phase)
@@ -140,7 +142,7 @@ def _compliance(body: PlaneStrain, nodes: Numbers, nu: float, depth: float) -> A
 
 
 def condensed(matrix: csc_matrix, kept: Numbers) -> Array:
-    """Schur complement of a symmetric positive definite matrix on the `kept` unknowns.
+    """Return the Schur complement of a symmetric positive definite matrix on the `kept` unknowns.
 
     With those numbered last, it is what elimination of the others leaves: the last block of L times U.
     """

@@ -92,7 +92,7 @@ class _State:
 def press(
     lower: Surface, upper: Surface, distance: float, load: float, friction: Friction = FRICTIONLESS
 ) -> Contact:
-    """The upper body slides along +x under `load` per wavelength and unit thickness.
+    """Solve as the upper body slides along +x under `load` per wavelength and unit thickness.
 
     lower, upper: surfaces about their mean planes, which are `distance` apart at first contact.
     Raises NotConverged.
@@ -167,7 +167,7 @@ def _settled(
 def complementary(
     matrix: Array, gap: Array, width: Array, weights: Array, load: float, active: NDArray[np.bool_]
 ) -> tuple[Array, float]:
-    """f >= 0, g = gap + matrix f - sink width >= 0, f g = 0, weights f = load; returns (f, sink)."""
+    """Solve f >= 0, g = gap + matrix f - sink width >= 0, f g = 0, weights f = load; return (f, sink)."""
     for _ in range(CHANGES):
         at = np.flatnonzero(active)
         system = np.block([[matrix[np.ix_(at, at)], -width[at, None]], [weights[None, at], np.zeros((1, 1))]])

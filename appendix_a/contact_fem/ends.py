@@ -22,7 +22,8 @@ REACH = 2.0  # the end is within so many edges of the last loaded node
 def contact_ends(
     x: Array, pressure: Array, slip: float = 0.0, nodes_per_degree: int = WIGGLY
 ) -> tuple[float, float]:
-    """Abscissae of both ends, for pressures >= 0 at nodes x (n,) of one contact; `slip` = coupling * beta.
+    """Return the abscissae of both ends, for pressures >= 0 at nodes x (n,) of one contact; `slip` =
+    coupling * beta.
 
     Smooth pressures do with 2 `nodes_per_degree` of the fit.
 

@@ -23,7 +23,8 @@ GAUSS = 6  # points on an edge: the other body's nodes, kinks of the integrands,
 
 
 def locate(x: Array, at: Array) -> tuple[Numbers, Array]:
-    """Edge and parameter t on it, for edges of node abscissae x (3, m) from left to right, at points (q,).
+    """Return the edge and parameter t on it, for edges of node abscissae x (3, m) from left to right, at
+    points (q,).
 
     Quadratic sides, x(t) = x0 + (x2 - x0) t + bow t (1 - t), by the root that does not cancel; points beyond
     the first or last edge are taken for its end (contact never comes near the zone's ends).
@@ -47,7 +48,7 @@ class Points:
 
 
 def gauss_points(left: Array, right: Array) -> Points:
-    """Gauss points on the parts [left, right] (m,) of the parameter of each edge."""
+    """Return Gauss points on the parts [left, right] (m,) of the parameter of each edge."""
     t, weight = np.polynomial.legendre.leggauss(GAUSS)
     width = np.maximum(right - left, 0.0)
     where = left[:, None] + width[:, None] * (1.0 + t) / 2.0
@@ -71,7 +72,7 @@ class Interface:
         return ends
 
     def at(self, points: Points) -> Sampled:
-        """Everything that integrals over the interface need at points on the lower surface."""
+        """Return everything that integrals over the interface need at points on the lower surface."""
         shape, slope = lagrange(2, points.t)
         on_lower = _interpolation(self.lower, points.edge, shape)
         tangent = _interpolation(self.lower, points.edge, slope) @ self.lower_at.T
@@ -100,7 +101,7 @@ class Interface:
         )
 
     def edges_within(self, span: tuple[float, float]) -> Points:
-        """Gauss points on the part of the lower surface whose deformed abscissae lie in `span`."""
+        """Return Gauss points on the part of the lower surface whose deformed abscissae lie in `span`."""
         x = self.lower_at[0][self.lower.edges]
         m = x.shape[1]
         (first, last), (t_first, t_last) = locate(x, np.array(span))
@@ -110,7 +111,7 @@ class Interface:
         return gauss_points(left, right)
 
     def whole(self) -> Points:
-        """Gauss points on every edge of the lower surface."""
+        """Return Gauss points on every edge of the lower surface."""
         m = self.lower.edges.shape[1]
         return gauss_points(np.zeros(m), np.ones(m))
 
@@ -128,7 +129,8 @@ class Sampled:
     slope: Array
 
     def forces(self, pressure: Array | csr_matrix, traction: Array | csr_matrix) -> tuple[Array, Array]:
-        """Nodal forces on the lower body and what the upper one feels, stacked (F_x; F_z), (2n, k).
+        """Return the nodal forces on the lower body and what the upper one feels, stacked (F_x; F_z), (2n,
+        k).
 
         `pressure`, `traction`: (q, k) values per unit deformed length, along the inward normal of the lower
         body and along the surface towards +x: (f dz + r dx, -f dx + r dz).
@@ -140,7 +142,7 @@ class Sampled:
         return lower, upper
 
     def gap_change(self) -> tuple[csr_matrix, csr_matrix]:
-        """(m + 1, 2n) weighted gap's derivatives by the lower and the upper nodal displacements.
+        """Return (m + 1, 2n) weighted gap's derivatives by the lower and the upper nodal displacements.
 
         A point of either surface that moves along x meets the other at another place: each displacement
         counts as u_z - slope u_x, with the upper surface's slope for both.
@@ -153,7 +155,7 @@ class Sampled:
         return -lower, upper
 
     def weighted_gap(self) -> tuple[Array, Array]:
-        """(m + 1,) integrals of hat times gap, and of hat, over dx."""
+        """Return (m + 1,) integrals of hat times gap, and of hat, over dx."""
         return self.hats.T @ (self.gap * self.dx), self.hats.T @ self.dx
 
 

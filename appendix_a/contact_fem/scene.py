@@ -82,9 +82,9 @@ class WavyPair:
         return math.pi * self.reduced_modulus * self.gap_amplitude
 
     def lower_height(self, x: Array) -> Array:
-        """z of the lower surface about its mean plane."""
+        """Return z of the lower surface about its mean plane."""
         return self.amplitude * np.cos(WAVENUMBER * (x + self.shift / 2.0))
 
     def upper_height(self, x: Array) -> Array:
-        """z of the upper surface about its mean plane."""
+        """Return z of the upper surface about its mean plane."""
         return -self.amplitude * np.cos(WAVENUMBER * (x - self.shift / 2.0))

@@ -32,7 +32,7 @@ class Estimate:
 
     @classmethod
     def of(cls, coarse: float, middle: float, fine: float) -> Estimate:
-        """From values on meshes each twice as fine as the one before.
+        """Extrapolate from values on meshes each twice as fine as the one before.
 
         >>> round(Estimate.of(1.16, 1.04, 1.01).error, 6)
         0.03
@@ -44,7 +44,9 @@ class Estimate:
 
 
 def plans(pair: WavyPair, load: float, level: int = 0, depth: float = 1.5) -> tuple[MeshPlan, MeshPlan]:
-    """Meshes of the lower and the upper body before the ends are known: Westergaard's half-length."""
+    """Return the meshes of the lower and the upper body before the ends are known: Westergaard's
+    half-length.
+    """
     share = min(load / pair.full_contact_pressure, 0.6)
     half = math.asin(math.sqrt(share)) / math.pi
     cells = 2 ** math.ceil(math.log2(BASE_CELLS / (2.0 * half)))
@@ -55,7 +57,7 @@ def plans(pair: WavyPair, load: float, level: int = 0, depth: float = 1.5) -> tu
 def surfaces(
     pair: WavyPair, meshes: tuple[MeshPlan, MeshPlan], *, straight: bool = False
 ) -> tuple[Surface, Surface]:
-    """Lower and upper surface with their compliances."""
+    """Return the lower and upper surface with their compliances."""
     half = pair.shift / 2.0
     lower = wavy_surface(pair.amplitude, -half, pair.lower, meshes[0], upper=False, straight=straight)
     return lower, wavy_surface(pair.amplitude, half, pair.upper, meshes[1], upper=True, straight=straight)
@@ -64,7 +66,7 @@ def surfaces(
 def slide(
     pair: WavyPair, load: float, meshes: tuple[MeshPlan, MeshPlan], *, straight: bool = False
 ) -> Contact:
-    """The pair under `load` per wavelength and thickness on given meshes; raises NotConverged."""
+    """Solve the pair under `load` per wavelength and thickness on given meshes; raises NotConverged."""
     lower, upper = surfaces(pair, meshes, straight=straight)
     return press(lower, upper, pair.gap_amplitude, load, Friction(pair.tau, pair.beta, pair.coupling))
 
@@ -72,7 +74,7 @@ def slide(
 def graded_plans(
     pair: WavyPair, load: float, *, depth: float = 1.5, straight: bool = False
 ) -> tuple[MeshPlan, MeshPlan]:
-    """Meshes with cells that shrink to the contact's ends, as a first solve finds them."""
+    """Return the meshes with cells that shrink to the contact's ends, as a first solve finds them."""
     meshes = plans(pair, load, depth=depth)
     found = slide(pair, load, plans(pair, load, level=1, depth=depth), straight=straight)
     lower, upper = (
@@ -89,7 +91,7 @@ class Sequence:
     contacts: tuple[Contact, ...]
 
     def estimate(self, quantity: str) -> Estimate:
-        """One of QUANTITIES with its discretisation error."""
+        """Return one of QUANTITIES with its discretisation error."""
         coarse, middle, fine = (float(getattr(contact, quantity)) for contact in self.contacts[-3:])
         return Estimate.of(coarse, middle, fine)
 
@@ -97,7 +99,7 @@ class Sequence:
 def slide_on_three_meshes(
     pair: WavyPair, load: float, *, levels: tuple[int, int, int] = (0, 1, 2), straight: bool = False
 ) -> Sequence:
-    """The pair under `load` on three uniform refinements of one graded mesh; raises NotConverged."""
+    """Solve the pair under `load` on three uniform refinements of one graded mesh; raises NotConverged."""
     lower, upper = graded_plans(pair, load, straight=straight)
     refined = [
         (

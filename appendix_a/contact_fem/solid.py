@@ -37,7 +37,7 @@ class Patch:
     compliance: Array
 
     def mirrored(self) -> Patch:
-        """The body turned upside down about the y axis' direction: x and z change sign."""
+        """Return the body turned upside down about the y axis' direction: x and z change sign."""
         sign = np.array([-1.0, 1.0, -1.0])
         _, nx, ny = self.at.shape
         order = np.arange(nx * ny).reshape(nx, ny)[::-1].ravel()
@@ -47,12 +47,14 @@ class Patch:
         return Patch(sign[:, None, None] * self.at[:, ::-1], compliance)
 
     def of_modulus(self, E: float) -> Patch:
-        """The body of Young's modulus E instead of 1."""
+        """Return the body of Young's modulus E instead of 1."""
         return Patch(self.at, self.compliance / E)
 
 
 def nodes_along(elements: int) -> tuple[Array, Array, Array]:
-    """Element ends along x, y and depth; `elements` of them from 0 to ZONE, the others in proportion."""
+    """Return element ends along x, y and depth; `elements` of them from 0 to ZONE, the others in
+    proportion.
+    """
     even = np.linspace(0.0, ZONE, elements + 1)
     wide = 0.5 - ZONE
     steps = np.linspace(0.0, 1.0, max(2, round(2 * elements / 3)) + 1)[1:]
@@ -63,7 +65,7 @@ def nodes_along(elements: int) -> tuple[Array, Array, Array]:
 
 @lru_cache(maxsize=4)
 def asperity(amplitude: float, crest: float, nu: float, elements: int) -> Patch:
-    """The body below z = amplitude (cos k (x - crest) + cos k y), E = 1."""
+    """Return the body below z = amplitude (cos k (x - crest) + cos k y), E = 1."""
     ends = nodes_along(elements)
     mesh = MeshHex2.from_mesh(MeshHex.init_tensor(*ends))
     x, y, d = mesh.doflocs

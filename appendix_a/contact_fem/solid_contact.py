@@ -50,7 +50,9 @@ class _Sampled:
     slope: Array
 
     def traction(self, beta: float) -> Array:
-        """(3, q) force on the lower body by unit pressure: against the normal, and beta along the tangent."""
+        """Return (3, q) force on the lower body by unit pressure: against the normal, and beta along the
+        tangent.
+        """
         tangent = np.array([self.area[2], np.zeros_like(self.gap), -self.area[0]])
         tangent /= np.hypot(self.area[2], self.area[0])
         force: Array = -self.area + beta * np.linalg.norm(self.area, axis=0) * tangent
@@ -134,7 +136,8 @@ def _sample(lower: Array, upper: Array) -> _Sampled:
 
 
 def press(lower: Patch, upper: Patch, distance: float, load: float, beta: float) -> SolidContact:
-    """The upper body slides along +x under `load` per square wavelength; planes `distance` apart at touch.
+    """Solve as the upper body slides along +x under `load` per square wavelength; planes `distance` apart at
+    touch.
 
     Raises NotConverged.
     """

@@ -30,7 +30,8 @@ OUTER = 64.0  # outer radius over the asperity's base; a quarter of it is the sm
 
 
 def circular_patch(r: Array, nu: float) -> Array:
-    """Exact u_z (m,) on a half-space under unit pressure on r < 1 (Johnson 1985, Eqs 3.29), in p a / E.
+    """Return the exact u_z (m,) on a half-space under unit pressure on r < 1 (Johnson 1985, Eqs 3.29), in p
+    a / E.
 
     >>> float(circular_patch(np.array([0.0]), 0.5)[0])  # 2 (1 - nu^2)
     1.5
@@ -67,7 +68,9 @@ class Axisymmetric(Body):
         return self.pressed(lambda r: r)
 
     def stiffness(self, nu: float) -> csc_matrix:
-        """lambda div u div v + 2 mu eps(u) : eps(v), div u = u_r,r + u_r / r + u_z,z; unknowns (u_r; u_z)."""
+        """Return lambda div u div v + 2 mu eps(u) : eps(v), div u = u_r,r + u_r / r + u_z,z; unknowns (u_r;
+        u_z).
+        """
         lam, mu = lame(nu)
         m = {name: form.assemble(self.basis).tocsc() for name, form in FORMS.items()}
         radial = (lam + 2 * mu) * (m["rr"] + m["00"]) + lam * m["0r"] + mu * m["zz"]
@@ -75,7 +78,7 @@ class Axisymmetric(Body):
         return bmat([[radial, mixed.T], [mixed, (lam + 2 * mu) * m["zz"] + mu * m["rr"]]], format="csc")
 
     def displacements(self, nu: float) -> Array:
-        """(2, n) nodal displacements; on the outer boundary Boussinesq's of the resultant force."""
+        """Return (2, n) nodal displacements; on the outer boundary Boussinesq's of the resultant force."""
         nodes, axis = self.nodes_of(self.outer), self.nodes_of(self.axis)
         r, z = self.basis.doflocs[:, nodes]
         z = z - self.surface_level
@@ -92,7 +95,8 @@ class Axisymmetric(Body):
 def asperity(
     shape: Literal["cone", "paraboloid"], slope_deg: float, half_base: float, nu: float, *, offsets: ArrayLike
 ) -> WavyResult:
-    """Axial surface displacements (positive into the body) of an asperity on a half-space, patch at its tip.
+    """Return the axial surface displacements (positive into the body) of an asperity on a half-space, patch
+    at its tip.
 
     slope_deg: the cone's slope, or the paraboloid's at its rim; 0 to 45 degrees.
     half_base: radius of the base, a power of two >= 4.
@@ -117,7 +121,7 @@ def asperity(
 
 
 def body_on(boundary: Boundary, half_base: float, radius: float, level: int) -> Axisymmetric:
-    """Mesh graded to the tip, the patch's rim and the foot of the asperity."""
+    """Return the mesh graded to the tip, the patch's rim and the foot of the asperity."""
     scale, centred = LEVELS[level]
     feet = ((0.0, 2.0**-4), (1.0, 2.0**-7), (half_base, half_base * 2.0**-5))
     sources = [Source(x, x, scale * size, scale) for x, size in feet]

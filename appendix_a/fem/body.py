@@ -37,7 +37,9 @@ class Body:
 
     @classmethod
     def on(cls, reference: MeshTri, bent: MeshTri2, order: int) -> Self:
-        """Tell facets apart on the reference mesh: surface eta = 0, strip |xi| < 1, axis xi = 0, outer."""
+        """Distinguish facets on the reference mesh: surface eta = 0, strip |xi| < 1, axis xi = 0,
+        outer.
+        """
         facets = reference.boundary_facets()
         xi, eta = reference.p[:, reference.facets[:, facets]].mean(axis=1)
         on_surface, on_axis = eta == 0.0, xi == 0.0
@@ -51,7 +53,8 @@ class Body:
         return Basis(self.mesh, ELEMENTS[self.order](), intorder=2 * self.order)
 
     def pressed(self, weight: Callable[[Array], Array] = np.ones_like) -> Array:
-        """Consistent nodal forces (2, n) of unit pressure on the strip, times `weight` of the abscissae.
+        """Return consistent nodal forces (2, n) of unit pressure on the strip, times `weight` of the
+        abscissae.
 
         Pressure acts against the outward normal; exact on the mesh's quadratic sides.
         """
@@ -66,7 +69,9 @@ class Body:
         return np.array([form.assemble(sides) for form in forms])
 
     def edge_nodes(self, facets: Numbers) -> Numbers:
-        """(order + 1, m) nodes of surface facets, from left to right, equally spaced in the parameter."""
+        """Return (order + 1, m) nodes of surface facets, from left to right, equally spaced in the
+        parameter.
+        """
         dofs = self.basis.dofs
         nodes = np.vstack([dofs.nodal_dofs[0][self.mesh.facets[:, facets]], dofs.facet_dofs[:, facets]])
         return np.take_along_axis(nodes, np.argsort(self.basis.doflocs[0][nodes], axis=0), axis=0)
@@ -77,11 +82,11 @@ class Body:
         return float(self.basis.doflocs[1, self.edge_nodes(self.surface[-1:])[-1, 0]])
 
     def nodes_of(self, facets: Numbers) -> Numbers:
-        """Scalar nodes on the given facets."""
+        """Return the scalar nodes on the given facets."""
         return np.asarray(self.basis.get_dofs(facets).all(), dtype=np.int64)
 
     def surface_values(self, u: Array, x: Array) -> Array:
-        """Values of a nodal field u (n,) on the rough boundary at abscissae x (m,).
+        """Return the values of a nodal field u (n,) on the rough boundary at abscissae x (m,).
 
         By the sides' own parameter: scikit-fem's `interpolator` and `probes` refuse curved meshes.
         """
@@ -99,7 +104,8 @@ class Body:
 
 
 def lagrange(order: int, t: Array) -> tuple[Array, Array]:
-    """Lagrange polynomials on equally spaced nodes of [0, 1] and their derivatives, (order + 1, len(t)).
+    """Return Lagrange polynomials on equally spaced nodes of [0, 1] and their derivatives, (order + 1,
+    len(t)).
 
     >>> [values.round(12).tolist() for values in lagrange(1, np.array([0.25]))]
     [[[0.75], [0.25]], [[-1.0], [1.0]]]
@@ -114,7 +120,9 @@ def lagrange(order: int, t: Array) -> tuple[Array, Array]:
 def solve_fixed(
     matrix: csc_matrix, load: Array, fixed: Numbers, values: Array, *, definite: bool = True
 ) -> Array:
-    """Solution of matrix u = load with u[fixed] = values; a `definite` matrix needs no pivoting."""
+    """Return the solution of matrix u = load with u[fixed] = values; a `definite` matrix needs no
+    pivoting.
+    """
     start = np.zeros(matrix.shape[0])
     start[fixed] = values
     inner, right, u, free = condense(matrix, load, x=start, D=fixed)

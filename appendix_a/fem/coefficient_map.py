@@ -50,7 +50,7 @@ class CoefficientMap:
     error_percentage_points: Array
 
     def departure(self, slope_deg: float, wavelength: float, position: float, nu: float) -> Array:
-        """Rough minus flat u(x) - u(0) (m,) at the table's offsets, one body, in units of p a / E.
+        """Return rough minus flat u(x) - u(0) (m,) at the table's offsets, one body, in units of p a / E.
 
         slope_deg: 0 to the largest tabulated; wavelength: at least the smallest (beyond the largest the
         rest is taken from there); position: any.  Raises InputError, also for axes too short to interpolate.
@@ -92,7 +92,7 @@ class CoefficientMap:
         return mixed
 
     def percent(self, slope_deg: float, wavelength: float, position: float, nu: float) -> Array:
-        """(rough - flat) / flat of one body (m,), in percent."""
+        """Return (rough - flat) / flat of one body (m,), in percent."""
         flat = pressed_strip(np.array(self.offset), nu)
         return 100.0 * self.departure(slope_deg, wavelength, position, nu) / flat
 
@@ -104,7 +104,8 @@ class CoefficientMap:
         lower: tuple[float, float],
         upper: tuple[float, float],
     ) -> Array:
-        """As `percent` for two bodies (E, nu) meeting on one wavy surface; `position` as the lower sees it.
+        """Return `percent` for two bodies (E, nu) meeting on one wavy surface; `position` as the lower sees
+        it.
 
         What is a crest to one is a valley to the other: half a wavelength apart.  The first-order parts
         enter as lower minus upper, and cancel for equal materials.
@@ -117,7 +118,7 @@ class CoefficientMap:
         return 100.0 * (below / modulus + above / modulus_upper) / flat
 
     def write(self, path: Path) -> None:
-        """The table as JSON, with what it means and how it was made."""
+        """Return the table as JSON, with what it means and how it was made."""
         document = {
             "version": VERSION,
             "what": (
@@ -143,7 +144,7 @@ class CoefficientMap:
 
     @classmethod
     def read(cls, path: Path) -> CoefficientMap:
-        """The table that `write` wrote.
+        """Return the table that `write` wrote.
 
         Raises InputError for another version, and for axes that do not rise or are incomplete.
         """
@@ -175,7 +176,7 @@ def interpolation_error(slope_deg: float) -> tuple[float, float]:
 
 
 def check_ascending(**axes: tuple[float, ...]) -> None:
-    """Raises InputError for an axis that is empty or does not rise throughout."""
+    """Raise InputError for an axis that is empty or does not rise throughout."""
     for name, values in axes.items():
         if not values or not np.all(np.diff(values) > 0):
             raise InputError(name, values, "at least one value, each above the one before")
@@ -184,7 +185,7 @@ def check_ascending(**axes: tuple[float, ...]) -> None:
 def check_complete(
     slope_deg: tuple[float, ...], wavelength: tuple[float, ...], position: tuple[float, ...]
 ) -> None:
-    """Raises InputError unless cubic splines and the positions' harmonics have what they need."""
+    """Raise InputError unless cubic splines and the positions' harmonics have what they need."""
     for name, values in (("slope_deg", slope_deg), ("wavelength", wavelength)):
         if len(values) < CUBIC:
             raise InputError(name, values, f"{CUBIC} values at least, to interpolate")
@@ -194,7 +195,7 @@ def check_complete(
 
 
 def height_change(slope_deg: float, wavelength: float, position: float, offsets: Array) -> Array:
-    """s(clip(x, -1, 1)) - s(0) of the sinusoid."""
+    """Return s(clip(x, -1, 1)) - s(0) of the sinusoid."""
     amplitude = math.tan(math.radians(slope_deg)) * wavelength / (2 * math.pi)
     phase = 2 * math.pi * (np.clip(offsets, -1.0, 1.0) / wavelength + position)
     return amplitude * (math.cos(2 * math.pi * position) - np.cos(phase))

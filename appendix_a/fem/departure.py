@@ -41,7 +41,7 @@ class Setup:
     order: int = ORDER
 
     def mesh(self, level: int) -> MeshTri:
-        """The reference mesh of LEVELS[level]."""
+        """Return the reference mesh of LEVELS[level]."""
         return _mesh(self, level)
 
 
@@ -53,7 +53,7 @@ def _mesh(setup: Setup, level: int) -> MeshTri:
 
 
 def body_of(setup: Setup, level: int, boundary: Boundary) -> PlaneStrain:
-    """The elastic body under `boundary` on the reference mesh of `level`."""
+    """Return the elastic body under `boundary` on the reference mesh of `level`."""
     mesh = setup.mesh(level)
     return PlaneStrain.on(mesh, bend(mesh, boundary), setup.order)
 
@@ -73,7 +73,7 @@ class Departure:
     second: Array
 
     def at(self, nu: float) -> Array:
-        """(1 + nu) times the line through the two solves' u / (1 + nu), which is linear in kappa."""
+        """Return (1 + nu) times the line through the two solves' u / (1 + nu), which is linear in kappa."""
         share = (nu - SOLVED_NU[0]) / (SOLVED_NU[1] - SOLVED_NU[0])
         first, second = self.first / (1.0 + SOLVED_NU[0]), self.second / (1.0 + SOLVED_NU[1])
         return (1.0 + nu) * ((1.0 - share) * first + share * second)
@@ -88,13 +88,14 @@ class Departures:
     radii: tuple[Departure, ...]
 
     def result(self, nu: float) -> WavyResult:
-        """The displacements at one Poisson ratio and their error."""
+        """Return the displacements at one Poisson ratio and their error."""
         meshes, radii = [d.at(nu) for d in self.meshes], [d.at(nu) for d in self.radii]
         return WavyResult.of(self.offsets, pressed_strip(self.offsets, nu), meshes, radii)
 
 
 def departure(setup: Setup, level: int, boundary: Boundary, offsets: Array) -> Departure:
-    """Rough minus flat displacement at horizontal `offsets` (m,), each relative to its value at the centre.
+    """Return rough minus flat displacement at horizontal `offsets` (m,), each relative to its value at the
+    centre.
 
     What is interpolated along the boundary is smooth: the two solves' difference at equal reference
     points, with the exact flat solution's share of their shift in x put right.

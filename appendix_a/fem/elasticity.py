@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 
 def lame(nu: float) -> tuple[float, float]:
-    """Lame's lambda and mu for E = 1."""
+    """Return Lame's lambda and mu for E = 1."""
     return nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 / (1.0 + nu)
 
 
@@ -58,7 +58,7 @@ class PlaneStrain(Body):
         return self.pressed()
 
     def stiffness(self, nu: float) -> csc_matrix:
-        """lambda div u div v + 2 mu eps(u) : eps(v), unknowns (u_x; u_y)."""
+        """Return lambda div u div v + 2 mu eps(u) : eps(v), unknowns (u_x; u_y)."""
         lam, mu = lame(nu)
         xx, xy, yy = self.scalar_matrices
         blocks = [
@@ -68,7 +68,8 @@ class PlaneStrain(Body):
         return bmat(blocks, format="csc")
 
     def far_field(self, nu: float) -> tuple[Numbers, Array]:
-        """Unknowns on the outer boundary, and their values under the load's resultant on a half-plane.
+        """Return the unknowns on the outer boundary, and their values under the load's resultant on a
+        half-plane.
 
         Flamant's point force carries the load's horizontal and vertical resultant and stands where
         its moment is the load's.
@@ -82,5 +83,5 @@ class PlaneStrain(Body):
         return np.concatenate([nodes, self.basis.N + nodes]), np.concatenate([u_x, u_y])
 
     def displacements(self, nu: float) -> Array:
-        """(2, n) nodal displacements, in units of pressure times length / E."""
+        """Return (2, n) nodal displacements, in units of pressure times length / E."""
         return solve_fixed(self.stiffness(nu), self.load.ravel(), *self.far_field(nu)).reshape(2, -1)

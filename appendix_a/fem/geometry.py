@@ -32,7 +32,9 @@ class Boundary:
 
 
 def strip_end(slope: Callable[[Array], Array], direction: int) -> float:
-    """Abscissa at arc length 1 from x = 0, on the side of `direction`, on a profile with dy/dx = slope(x)."""
+    """Return the abscissa at arc length 1 from x = 0, on the side of `direction`, on a profile with dy/dx =
+    slope(x).
+    """
     nodes, weights = np.polynomial.legendre.leggauss(40)  # to rounding: the profile is smooth over 1
 
     def excess(x: float) -> float:
@@ -42,12 +44,13 @@ def strip_end(slope: Callable[[Array], Array], direction: int) -> float:
 
 
 def flat() -> Boundary:
-    """The half-plane itself."""
+    """Return the half-plane itself."""
     return Boundary(height=np.zeros_like, left=-1.0, right=1.0, depth=1.0)
 
 
 def sinusoid_boundary(slope_deg: float, wavelength: float, position: float, reach: float) -> Boundary:
-    """Profile (A2), y = 2 h_a sin^2(pi x / lambda), about x = position * lambda, taken to |x| = reach.
+    """Return the profile (A2), y = 2 h_a sin^2(pi x / lambda), about x = position * lambda, taken to |x| =
+    reach.
 
     The slope's maximum is 2 pi h_a / lambda = tan(slope_deg).  Between reach / 2 and reach the waves fade
     to their mean level: beyond, the boundary is flat and the far field of a half-plane is exact to the
@@ -67,7 +70,7 @@ def sinusoid_boundary(slope_deg: float, wavelength: float, position: float, reac
 
 
 def ridge_boundary(slope_deg: float, half_base: float) -> Boundary:
-    """A wedge tip at x = 0 with faces at `slope_deg`, on a flat half-plane beyond |x| = half_base."""
+    """Return a wedge tip at x = 0 with faces at `slope_deg`, on a flat half-plane beyond |x| = half_base."""
     tangent, end = math.tan(math.radians(slope_deg)), math.cos(math.radians(slope_deg))
 
     def height(x: Array) -> Array:
@@ -77,7 +80,9 @@ def ridge_boundary(slope_deg: float, half_base: float) -> Boundary:
 
 
 def cap_boundary(slope_deg: float, half_base: float) -> Boundary:
-    """A parabolic cap of slope `slope_deg` at its rim |x| = half_base, on a flat body; its top at x = 0."""
+    """Return a parabolic cap of slope `slope_deg` at its rim |x| = half_base, on a flat body; its top at x =
+    0.
+    """
     curvature = math.tan(math.radians(slope_deg)) / half_base
 
     def height(x: Array) -> Array:
@@ -94,7 +99,9 @@ def _smooth_step(t: Array) -> Array:
 
 
 def bend(mesh: MeshTri, boundary: Boundary) -> MeshTri2:
-    """The reference mesh on the boundary's body, with quadratic sides whose nodes lie on the profile."""
+    """Return the reference mesh on the boundary's body, with quadratic sides whose nodes lie on the
+    profile.
+    """
     curved = MeshTri2.from_mesh(mesh)
     xi, eta = curved.doflocs
     # linear between vertices of the mesh: +-1 to the strip's ends, beyond +-4 nothing moves

@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 def point_force(x: Array, y: Array, force: tuple[float, float], nu: float) -> tuple[Array, Array]:
-    """Displacements (u_x, u_y) at (x, y) under a force (F_x, F_y) on the surface at the origin.
+    """Return displacements (u_x, u_y) at (x, y) under a force (F_x, F_y) on the surface at the origin.
 
     The stress is radial, -2 F . r / (pi r^2) (Flamant); the rotation tends to zero at infinity, the
     translation is arbitrary.
@@ -31,7 +31,8 @@ def point_force(x: Array, y: Array, force: tuple[float, float], nu: float) -> tu
 
 
 def pressed_strip(x: Array, nu: float, half_width: float = 1.0) -> Array:
-    """u_y(x) - u_y(0) of the surface under unit pressure on |x| < half_width, in units of pressure / E.
+    """Return u_y(x) - u_y(0) of the surface under unit pressure on |x| < half_width, in units of pressure /
+    E.
 
     >>> pressed_strip(np.array([2.0]), 0.0), -6 * np.log(3.0) / np.pi
     (array([-2.09819...]), np.float64(-2.09819...))
@@ -40,5 +41,7 @@ def pressed_strip(x: Array, nu: float, half_width: float = 1.0) -> Array:
 
 
 def sheared_strip(x: Array, nu: float, half_width: float = 1.0) -> Array:
-    """u_y(x) - u_y(0) of the surface under unit traction along +x on |x| < half_width, in traction / E."""
+    """Return u_y(x) - u_y(0) of the surface under unit traction along +x on |x| < half_width, in traction /
+    E.
+    """
     return (1.0 + nu) * (1.0 - 2.0 * nu) * np.clip(x, -half_width, half_width)

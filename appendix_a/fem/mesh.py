@@ -30,7 +30,7 @@ class Source:
     growth: float
 
     def limit(self, x0: Array, y0: Array, size: Array) -> Array:
-        """Largest allowed size of cells [x0, x0 + size] x [y0, y0 + size]."""
+        """Return the largest allowed size of cells [x0, x0 + size] x [y0, y0 + size]."""
         apart = np.maximum(np.maximum(self.left - (x0 + size), x0 - self.right), 0.0)
         return np.maximum(self.size, self.growth * np.hypot(apart, y0))
 
@@ -38,7 +38,7 @@ class Source:
 def graded_mesh(
     sources: Sequence[Source], radius: float, *, centred: bool = True, quadrant: bool = False
 ) -> MeshTri:
-    """Conforming triangles over [-radius, radius] x [0, radius], or [0, radius]^2 for a `quadrant`.
+    """Return conforming triangles over [-radius, radius] x [0, radius], or [0, radius]^2 for a `quadrant`.
 
     `radius` is a power of two, so that every dyadic point of the surface (0, +-1, ...) is a vertex
     wherever cells are small enough.  Lengths in any one unit.  The mesh of a half-plane with symmetric

@@ -18,7 +18,8 @@ SIX_NODES = np.array([[0.0, 1.0, 0.0, 0.5, 0.5, 0.0], [0.0, 0.0, 1.0, 0.0, 0.5, 
 
 
 def write_fields(path: Path, body: PlaneStrain, nu: float, u: Array) -> None:
-    """Mesh, nodal displacements and element stresses of a solved body, in the format of the path's suffix.
+    """Write the mesh, nodal displacements and element stresses of a solved body, in the format of the
+    path's suffix.
 
     path: e.g. *.vtu.  u: (2, n) nodal displacements in units of p a / E, lengths in a, stresses in p.
     """
@@ -36,7 +37,7 @@ def write_fields(path: Path, body: PlaneStrain, nu: float, u: Array) -> None:
 
 
 def element_stresses(body: PlaneStrain, nu: float, u: Array) -> dict[str, Array]:
-    """Stress components at the elements' centroids, each (elements,), in units of the pressure."""
+    """Return the stress components at the elements' centroids, each (elements,), in units of the pressure."""
     centroid = (np.full((2, 1), 1.0 / 3.0), np.array([0.5]))
     basis = Basis(body.mesh, ELEMENTS[body.order](), quadrature=centroid)
     (xx, xy), (yx, yy) = (basis.interpolate(component).grad[:, :, 0] for component in u)

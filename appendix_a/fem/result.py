@@ -33,7 +33,7 @@ class WavyResult:
 
     @classmethod
     def of(cls, offsets: Array, flat: Array, meshes: Sequence[Array], radii: Sequence[Array]) -> Self:
-        """From rough minus flat on three meshes and at three outer radii."""
+        """Extrapolate from rough minus flat on three meshes and at three outer radii."""
         mesh_error, truncation = _grid_convergence_index(meshes), np.abs(radii[-1] - radii[-2])
         largest = float(np.max(mesh_error + truncation, initial=0.0))
         return cls(offsets, flat + meshes[-1], flat, largest, mesh_error, truncation, flat + np.array(meshes))

@@ -32,7 +32,8 @@ def sinusoid(
     offsets: ArrayLike,
     progress: Callable[[], None] | None = None,
 ) -> WavyResult:
-    """Surface displacements of profile (A2) under a uniform pressure p along the local normal, plane strain.
+    """Return the surface displacements of profile (A2) under a uniform pressure p along the local normal,
+    plane strain.
 
     slope_deg: maximum slope of y = 2 h_a sin^2(pi x / lambda), y into the body, so that its tangent is
         2 pi h_a / lambda; 0 to 45 degrees.
@@ -61,7 +62,7 @@ def departures(
     *,
     progress: Callable[[], None] | None = None,
 ) -> Departures:
-    """As `sinusoid`, for every Poisson ratio at once; `levels` are the three meshes, coarse to fine."""
+    """Return `sinusoid` for every Poisson ratio at once; `levels` are the three meshes, coarse to fine."""
     where = np.atleast_1d(reals("offsets", offsets, OFFSETS))
     _check(slope_deg, wavelength, position, where)
     # fading waves must not touch the outermost offset at half the reach either: it begins at reach / 4 there
@@ -80,7 +81,9 @@ def departures(
 
 
 def setup_for(wavelength: float, reach: float) -> Setup:
-    """Mesh parameters: grading to the strip's ends, cells of lambda / 8 near it and lambda / 4 far."""
+    """Return the mesh parameters: grading to the strip's ends, cells of lambda / 8 near it and lambda / 4
+    far.
+    """
     ends = [Source(end, end, END_SIZE, 1.0) for end in (-1.0, 1.0)]
     near = min(reach, 1.5 * wavelength)
     waves = [Source(-near, near, wavelength / 8, 1.0), Source(-reach, reach, wavelength / 4, 1.0)]

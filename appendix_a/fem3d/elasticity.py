@@ -21,23 +21,27 @@ Indices = NDArray[np.int64]
 
 
 def lame_constants(nu: float) -> tuple[float, float]:
-    """(lambda, mu) for E = 1."""
+    """Return (lambda, mu) for E = 1."""
     return nu / ((1 + nu) * (1 - 2 * nu)), 0.5 / (1 + nu)
 
 
 def depth_scale(surface: Waviness) -> float:
-    """Depth l over which the map's waviness dies out; half a wave keeps |h| / l = tan(slope) / pi < 1."""
+    """Return the depth l over which the map's waviness dies out; half a wave keeps |h| / l = tan(slope) / pi
+    < 1.
+    """
     return 0.5 * surface.wavelength
 
 
 def mapped(surface: Waviness, points: Array) -> Array:
-    """Body coordinates (3, n) of block points (3, n)."""
+    """Return the body coordinates (3, n) of block points (3, n)."""
     x, y, zeta = points
     return np.array([x, y, zeta + surface.height(x, y) * np.exp(zeta / depth_scale(surface))])
 
 
 def body_gradients(basis: Basis, surface: Waviness) -> tuple[Array, Array]:
-    """Body gradients (3, elements, points, 27) of the shape functions, and weights (elements, points)."""
+    """Return the body gradients (3, elements, points, 27) of the shape functions, and weights (elements,
+    points).
+    """
     x, y, zeta = np.asarray(basis.global_coordinates())
     decay = np.exp(zeta / depth_scale(surface))
     stretch = 1 + surface.height(x, y) * decay / depth_scale(surface)
@@ -50,7 +54,7 @@ def body_gradients(basis: Basis, surface: Waviness) -> tuple[Array, Array]:
 
 
 def stiffness(space: Space, surface: Waviness, nu: float) -> Array:
-    """Element matrices (elements, 81, 81); unknowns run component by component, 27 nodes each."""
+    """Return the element matrices (elements, 81, 81); unknowns run component by component, 27 nodes each."""
     lame, shear = lame_constants(nu)
     count = space.element_nodes.shape[0]
     matrices, laplacians = np.empty((count, 3, 27, 3, 27)), np.zeros((count, 27, 27))
@@ -87,7 +91,7 @@ class Operator:
 
 
 def patch_load(space: Space, surface: Waviness, edges: tuple[float, float]) -> Array:
-    """Nodal forces (3, nx, ny, nz) of unit pressure along the normal on `edges` x (-1, 1).
+    """Return the nodal forces (3, nx, ny, nz) of unit pressure along the normal on `edges` x (-1, 1).
 
     Pressure on a facet passes (dz/dx, dz/dy, -1) per projected area.
     """

@@ -47,7 +47,8 @@ def _moment(distance: Array, pole: complex) -> NDArray[np.complex128]:
 
 
 def wave_kernel(x: Array, y: Array, wavenumber: float) -> NDArray[np.complex128]:
-    """Inverse transform of sin^2(angle of k and k + k0), times exp(i k0 x); k0 along x, (x, y) != 0.
+    """Return the inverse transform of sin^2(angle of k and k + k0), times exp(i k0 x); k0 along x, (x, y) !=
+    0.
 
     That is exp(i k0 x) (2 pi)^-2 times the integral of k0^2 k_y^2 / (|k|^2 |k + k0|^2) exp(i k . x): done
     over k_x by residues it leaves, over k_y = q, q cos(q y) exp(-q |x|) / (k0 +- 2 i q), an exponential
@@ -64,7 +65,9 @@ def wave_kernel(x: Array, y: Array, wavenumber: float) -> NDArray[np.complex128]
 
 
 def waves(surface: Waviness) -> list[tuple[float, float, float]]:
-    """(amplitude, k_x, k_y) of the plane waves that make up the surface; an egg-box is two oblique ones."""
+    """Return (amplitude, k_x, k_y) of the plane waves that make up the surface; an egg-box is two oblique
+    ones.
+    """
     k = surface.wavenumber
     if surface.kind is Kind.RIDGE:
         return [(surface.amplitude, k, 0.0)]
@@ -72,12 +75,14 @@ def waves(surface: Waviness) -> list[tuple[float, float, float]]:
 
 
 def facet_part(surface: Waviness, x: Array, y: Array, nu: float) -> Array:
-    """[c] tan(theta) (m,): the slope under the centre, taken as that of the whole loaded element."""
+    """Return [c] tan(theta) (m,): the slope under the centre, taken as that of the whole loaded element."""
     return surface.local_slope * tangential_coefficient(x, y, nu)
 
 
 def far_part(surface: Waviness, x: Array, y: Array, nu: float) -> Array:
-    """(m,) the rest of the first order: the slope's variation under the load, and the second term of w1."""
+    """Return (m,) the rest of the first order: the slope's variation under the load, and the second term of
+    w1.
+    """
     nodes, weights = np.polynomial.legendre.leggauss(GAUSS)
     sx, sy = np.meshgrid(nodes, nodes, indexing="ij")
     area = np.outer(weights, weights)
@@ -95,12 +100,14 @@ def far_part(surface: Waviness, x: Array, y: Array, nu: float) -> Array:
 
 
 def first_order(surface: Waviness, x: Array, y: Array, nu: float) -> Array:
-    """Wavy minus flat displacement (m,) at (x, y), to first order in the slope: `facet_part` + `far_part`."""
+    """Return the wavy minus flat displacement (m,) at (x, y), to first order in the slope: `facet_part` +
+    `far_part`.
+    """
     return facet_part(surface, x, y, nu) + far_part(surface, x, y, nu)
 
 
 def growth_coefficient(nu: float) -> float:
-    """(1 - 2 nu)^2 / (4 (1 - nu)): the number in `growth`.
+    """Return (1 - 2 nu)^2 / (4 (1 - nu)): the number in `growth`.
 
     >>> round(growth_coefficient(0.3), 4)
     0.0571
@@ -109,7 +116,8 @@ def growth_coefficient(nu: float) -> float:
 
 
 def growth(surface: Waviness, x: Array, y: Array, nu: float) -> Array:
-    """The part (m,), over flat, that grows with offset / wavelength: a ridge under a point force, k r small.
+    """Return the part (m,), over flat, that grows with offset / wavelength: a ridge under a point force, k r
+    small.
 
     -growth_coefficient(nu) kappa r [ln(2 / (k r)) - gamma + x^2 / r^2], kappa the curvature midway to (x, y).
     """

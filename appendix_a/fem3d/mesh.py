@@ -28,7 +28,7 @@ class Sizes:
     growth: float = 0.7
 
     def intervals(self, marks: tuple[float, ...], level: int) -> Array:
-        """Nodes on all marks and between them, at equal steps of the integral of 1 / size."""
+        """Return the nodes on all marks and between them, at equal steps of the integral of 1 / size."""
         s = np.concatenate(([0.0], np.geomspace(1e-3, marks[-1], 4000)))
         middle = 0.5 * (s[1:] + s[:-1])
         size = np.minimum(self.core + self.growth * np.maximum(middle - self.even, 0.0), self.cap)
@@ -65,7 +65,7 @@ def block(
     waves_across: bool,
     edges: tuple[float, float] = (-1.0, 1.0),
 ) -> Block:
-    """The half block |x|, y, -zeta <= radius around an element that spans `edges` in x and -1..1 in y.
+    """Return the half block |x|, y, -zeta <= radius around an element that spans `edges` in x and -1..1 in y.
 
     Intervals are at most half a wave where the surface waves, so level 2 has four quadratic elements a wave.
     """

@@ -16,7 +16,8 @@ Size = float | Array
 
 
 def normal_integral(x: Array, y: Array, half_x: Size = 1.0, half_y: Size = 1.0) -> Array:
-    """Integral of 1/rho over rectangles, from (x, y): X asinh(Y/|X|) + Y asinh(X/|Y|) over their corners.
+    """Return the integral of 1/rho over rectangles, from (x, y): X asinh(Y/|X|) + Y asinh(X/|Y|) over their
+    corners.
 
     >>> float(normal_integral(np.zeros(1), np.zeros(1))[0] / np.arcsinh(1.0))
     8.0
@@ -35,7 +36,9 @@ def _times_asinh(u: Array, v: Array) -> Array:
 
 
 def tangential_integral(x: Array, y: Array, half_x: float = 1.0, half_y: float = 1.0) -> Array:
-    """Integral of (x - x') / rho^2 over the rectangle: Y ln(rho) + X atan(Y/X) over its corners."""
+    """Return the integral of (x - x') / rho^2 over the rectangle: Y ln(rho) + X atan(Y/X) over its
+    corners.
+    """
     total = np.zeros_like(x)
     for sx in (-1.0, 1.0):
         for sy in (-1.0, 1.0):
@@ -47,17 +50,18 @@ def tangential_integral(x: Array, y: Array, half_x: float = 1.0, half_y: float =
 
 
 def normal_coefficient(x: Array, y: Array, nu: float, half_x: float = 1.0, half_y: float = 1.0) -> Array:
-    """a: displacement of the surface into the body under unit pressure on the rectangle."""
+    """Return a: displacement of the surface into the body under unit pressure on the rectangle."""
     return (1 - nu * nu) / pi * normal_integral(x, y, half_x, half_y)
 
 
 def tangential_coefficient(x: Array, y: Array, nu: float, half_x: float = 1.0, half_y: float = 1.0) -> Array:
-    """c: displacement of the surface into the body under unit traction along +x on the rectangle."""
+    """Return c: displacement of the surface into the body under unit traction along +x on the rectangle."""
     return (1 + nu) * (1 - 2 * nu) / (2 * pi) * tangential_integral(x, y, half_x, half_y)
 
 
 def tilted_plane(x: Array, y: Array, nu: float, slope_deg: float, *, projected: bool) -> Array:
-    """Exact downward displacement at horizontal offsets on an infinite plane of `slope_deg`, +x downhill.
+    """Return the exact downward displacement at horizontal offsets on an infinite plane of `slope_deg`, +x
+    downhill.
 
     The flat solution in the plane's own frame: offsets along it are x / cos, the loaded rectangle is 2 /
     cos long if its edge is 2 in projection and 2 if it is 2 along the facet, and down is cos times the
@@ -71,12 +75,12 @@ def tilted_plane(x: Array, y: Array, nu: float, slope_deg: float, *, projected: 
 
 
 def facet_prediction(x: Array, y: Array, nu: float, slope_deg: float) -> Array:
-    """[a] f + [c_s] f tan(theta): a flat half-space under the tractions of a facet, +x downhill."""
+    """Return [a] f + [c_s] f tan(theta): a flat half-space under the tractions of a facet, +x downhill."""
     return normal_coefficient(x, y, nu) - tan(radians(slope_deg)) * tangential_coefficient(x, y, nu)
 
 
 def boussinesq(x: Array, y: Array, z: Array, nu: float) -> Array:
-    """Displacements (3, ...) of a unit force pressing down at the origin (Johnson 1985, 3.18)."""
+    """Return displacements (3, ...) of a unit force pressing down at the origin (Johnson 1985, 3.18)."""
     depth, rho = -z, np.sqrt(x * x + y * y + z * z)
     radial = depth / rho**3 - (1 - 2 * nu) / (rho * (rho + depth))
     down = depth * depth / rho**3 + 2 * (1 - nu) / rho
@@ -84,7 +88,7 @@ def boussinesq(x: Array, y: Array, z: Array, nu: float) -> Array:
 
 
 def cerruti(x: Array, y: Array, z: Array, nu: float) -> Array:
-    """Displacements (3, ...) of a unit force along +x at the origin (Johnson 1985, 3.75)."""
+    """Return displacements (3, ...) of a unit force along +x at the origin (Johnson 1985, 3.75)."""
     depth, rho = -z, np.sqrt(x * x + y * y + z * z)
     s = rho + depth
     along = 1 / rho + x * x / rho**3 + (1 - 2 * nu) * (1 / s - x * x / (rho * s * s))
@@ -94,7 +98,9 @@ def cerruti(x: Array, y: Array, z: Array, nu: float) -> Array:
 
 
 def far_field(points: Array, forces: Array, sources: Array, nu: float) -> Array:
-    """Displacements (3, n) at `points` (3, n) of forces (m, 2), along x and down, at (m, 2) on z = 0."""
+    """Return displacements (3, n) at `points` (3, n) of forces (m, 2), along x and down, at (m, 2) on z =
+    0.
+    """
     total = np.zeros_like(points)
     for (along, down), (sx, sy) in zip(forces, sources, strict=True):
         x, y, z = points[0] - sx, points[1] - sy, points[2]

@@ -25,7 +25,7 @@ ITERATION_LIMIT = 400  # 80 are needed at nu = 0.45 and a slope of 30 degrees, 2
 
 
 def line_matrices(nodes: Array) -> tuple[Array, Array]:
-    """(stiffness, mass) of quadratic line elements on `nodes` (2 n + 1,), ends and midpoints."""
+    """Return (stiffness, mass) of quadratic line elements on `nodes` (2 n + 1,), ends and midpoints."""
     basis = Basis(MeshLine(nodes[::2]), ElementLineP2())
     order = np.argsort(basis.doflocs[0])
     stiff, mass = (form.assemble(basis).toarray()[np.ix_(order, order)] for form in (laplace, mass_form))
@@ -54,14 +54,16 @@ class SeparableInverse:
         return result
 
     def clear_held(self, force: Array) -> None:
-        """Zero the forces (nx, ny, nz) on the held nodes, in place."""
+        """Set to zero the forces (nx, ny, nz) on the held nodes, in place."""
         kept = force[self.free].copy()
         force[:] = 0.0
         force[self.free] = kept
 
 
 def separable_inverse(axes: tuple[Array, Array, Array], component: int, nu: float) -> SeparableInverse:
-    """Block (component, component): held on the outer boundary; component y on the symmetry plane as well."""
+    """Return the block (component, component): held on the outer boundary; component y on the symmetry plane
+    as well.
+    """
     lame, shear = lame_constants(nu)
     free = (slice(1, -1), slice(1 if component == 1 else 0, -1), slice(1, None))
     modes, total = [], np.zeros((1, 1, 1))
@@ -88,7 +90,7 @@ class LinearSolution:
 
 
 def solve(operator: Operator, nu: float, load: Array, held: Array) -> LinearSolution:
-    """K u = load with u = `held` on the outer boundary (zero elsewhere); all fields (3, nx, ny, nz).
+    """Solve K u = load with u = `held` on the outer boundary (zero elsewhere); all fields (3, nx, ny, nz).
 
     Raises NotConverged when the recomputed residual misses TOLERANCE.
     """

@@ -40,24 +40,26 @@ class Space:
         return self.tensor_index.size
 
     def points(self) -> Array:
-        """Block coordinates (3, nodes)."""
+        """Return the block coordinates (3, nodes)."""
         return np.array(np.meshgrid(*self.axes, indexing="ij")).reshape(3, -1)
 
     def outer_boundary(self) -> NDArray[np.bool_]:
-        """Nodes (nx, ny, nz) on both x ends, the far y end and the bottom."""
+        """Return the nodes (nx, ny, nz) on both x ends, the far y end and the bottom."""
         outer = np.zeros(self.shape, dtype=np.bool_)
         outer[[0, -1]], outer[:, -1], outer[:, :, 0] = True, True, True
         return outer
 
     def tabulated(self) -> Iterator[tuple[slice, Basis]]:
-        """The elements in chunks, each with its basis at 3 x 3 x 3 Gauss points (exact on the flat body)."""
+        """Return the elements in chunks, each with its basis at 3 x 3 x 3 Gauss points (exact on the flat
+        body).
+        """
         for start in range(0, self.element_nodes.shape[0], CHUNK):
             part = slice(start, min(start + CHUNK, self.element_nodes.shape[0]))
             elements = np.arange(part.start, part.stop)
             yield part, Basis(self.mesh, ElementHex2(), intorder=5, elements=elements, dofs=self.dofs)
 
     def top(self, edges: tuple[float, float]) -> FacetBasis:
-        """Basis on the loaded part of the surface: `edges` in x, up to 1 in y."""
+        """Return the basis on the loaded part of the surface: `edges` in x, up to 1 in y."""
         above = 1e-9 * self.axes[2][0]
 
         def loaded(x: Array) -> NDArray[np.bool_]:
@@ -68,7 +70,7 @@ class Space:
 
 
 def space(block: Block) -> Space:
-    """The displacement space of a block."""
+    """Return the displacement space of a block."""
     mesh = MeshHex.init_tensor(block.x, block.y, block.zeta)
     # scikit-fem numbers all nodes whichever elements are tabulated; one is enough here
     basis = Basis(mesh, ElementHex2(), intorder=5, elements=np.array([0]))
@@ -79,7 +81,7 @@ def space(block: Block) -> Space:
 
 
 def with_midpoints(ends: Array) -> Array:
-    """The nodes of a line of quadratic elements, from the elements' ends."""
+    """Return the nodes of a line of quadratic elements, from the elements' ends."""
     nodes = np.empty(2 * ends.size - 1)
     nodes[::2], nodes[1::2] = ends, 0.5 * (ends[1:] + ends[:-1])
     return nodes

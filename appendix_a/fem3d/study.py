@@ -56,12 +56,12 @@ def grid(
     width: str = "projected",
     quality: str = "quick",
 ) -> list[Point]:
-    """All pairs of slope and position."""
+    """Return all pairs of slope and position."""
     return [Point(s, wavelength, p, nu, kind, width, quality) for s in slopes for p in positions]
 
 
 def points() -> list[Point]:
-    """The whole study, most wanted first; those sharing flat solutions stand together."""
+    """Return the whole study, most wanted first; those sharing flat solutions stand together."""
     first = [
         *grid(SLOPES, 20.0, 0.3),
         *grid((6.5, 10.0, 30.0), 20.0, 0.3, (FLANK,), width="facet"),
@@ -99,7 +99,8 @@ def points() -> list[Point]:
 
 
 def row(point: Point, result: Coefficients3D, seconds: float) -> dict[str, object]:
-    """One line of the table; errors and their bounds are fractions of flat, in the order of the labels.
+    """Return one line of the table; errors and their bounds are fractions of flat, in the order of the
+    labels.
 
     Exact flat coefficients and first-order theory are not in it: closed forms of the arguments give both.
     """
@@ -120,7 +121,7 @@ def row(point: Point, result: Coefficients3D, seconds: float) -> dict[str, objec
 
 
 def header(command: str) -> dict[str, object]:
-    """Provenance of the table."""
+    """Return the provenance of the table."""
     packages = ("numpy", "scipy", "scikit-fem")
     return {
         "table": "appendix_a_3d",
@@ -135,7 +136,7 @@ def header(command: str) -> dict[str, object]:
 
 
 def load(path: Path) -> list[dict[str, object]]:
-    """The rows of a table, none if there is no file. Raises InputError for a file of another kind."""
+    """Return the rows of a table, none if there is no file. Raises InputError for a file of another kind."""
     if not path.exists():
         return []
     try:
@@ -184,7 +185,7 @@ def run(
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Command line; exit status 0, or 2 for a table that is not one."""
+    """Run the command line; exit status 0, or 2 for a table that is not one."""
     parser = argparse.ArgumentParser(description="Extend the table of influence coefficients in 3-D.")
     parser.add_argument("table", type=Path)
     parser.add_argument("--seconds", type=float, default=1500.0, help="start no new point after this long")

@@ -46,7 +46,7 @@ def solved(
 def sample(
     surface: Waviness, nu: float, radius: float, level: int, edges: tuple[float, float] = (-1.0, 1.0)
 ) -> Sample:
-    """Displacements of `solved` at the centres of the loaded element and of its neighbours."""
+    """Return displacements of `solved` at the centres of the loaded element and of its neighbours."""
     body, solution = solved(surface, nu, radius, level, edges)
     top = solution.field[2, :, :, -1]
     i, j = np.searchsorted(body.axes[0], X - 1e-9), np.searchsorted(body.axes[1], Y - 1e-9)
@@ -55,12 +55,12 @@ def sample(
 
 @cache
 def flat_sample(wavelength: float, kind: Kind, nu: float, radius: float, level: int) -> Sample:
-    """Displacements on the flat surface, on the mesh that this waviness would have."""
+    """Return displacements on the flat surface, on the mesh that this waviness would have."""
     return sample(Waviness(0.0, wavelength, 0.0, kind), nu, radius, level)
 
 
 def outer_displacements(body: Space, surface: Waviness, nu: float, edges: tuple[float, float]) -> Array:
-    """Held displacements (3, nx, ny, nz): a flat half-space z < 0 under the element's tractions.
+    """Return the held displacements (3, nx, ny, nz): a flat half-space z < 0 under the element's tractions.
 
     4 x 4 Gauss point forces stand for the patch: at the boundary's 24 a or more they differ from it by
     less than 1e-12. The tractions along y cancel in pairs and are neglected.

@@ -46,13 +46,16 @@ class Table3D:
     uncertainty: dict[Series, dict[float, float]]
 
     def slopes(self, series: Series) -> Array:
-        """The tabulated slopes (degrees), rising. Raises InputError for a series that was not computed."""
+        """Return the tabulated slopes (degrees), rising. Raises InputError for a series that was not
+        computed.
+        """
         if series not in self.errors:
             raise InputError("series", series, "one that the table holds")
         return np.array(sorted(self.errors[series]))
 
     def error(self, series: Series, slope_deg: float | Array) -> Array:
-        """Errors (..., 10), one body: quotients by tan(slope) between neighbouring slopes, linear in it.
+        """Return the errors (..., 10), one body: quotients by tan(slope) between neighbouring slopes, linear
+        in it.
 
         Below the first slope the quotient is the first one's, where second order is 4 % of it.
         `position` beyond 0.5 is the mirrored one. Raises InputError for a slope beyond the last.
@@ -75,7 +78,8 @@ class Table3D:
     def pair_error(
         self, series: Series, slope_deg: float | Array, lower: tuple[float, float], upper: tuple[float, float]
     ) -> Array:
-        """As `error` for bodies (E, nu) meeting on one wavy surface; `position` as the lower body sees it.
+        """Return `error` for bodies (E, nu) meeting on one wavy surface; `position` as the lower body sees
+        it.
 
         What is a crest to one is a valley to the other; `series.nu` is not used.
         """
@@ -90,7 +94,7 @@ class Table3D:
 
     @classmethod
     def read(cls, path: Path) -> Table3D:
-        """The condensed table. Raises InputError for another kind or version."""
+        """Return the condensed table. Raises InputError for another kind or version."""
         document = json.loads(path.read_text(encoding="utf-8"))
         if document.get("table") != "coefficient_error_3d" or document.get("version") != VERSION:
             raise InputError("table", str(path), f"coefficient_error_3d, version {VERSION}")
@@ -103,7 +107,8 @@ class Table3D:
 
 
 def slope_of(error: Array, slopes: Array, limit: float = 0.02) -> list[float | None]:
-    """Per column of `error` (slopes, labels) the smallest slope with |error| >= limit; None if there is none.
+    """Return per column of `error` (slopes, labels) the smallest slope with |error| >= limit; None if
+    there is none.
 
     >>> slope_of(np.array([[0.0, 0.0], [0.03, 0.0], [0.01, 0.01]]), np.array([0.0, 1.0, 2.0]))
     [1.0, None]
@@ -128,7 +133,7 @@ def condensed(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def write(path: Path, rows: Sequence[dict[str, Any]]) -> None:
-    """The condensed table as JSON, a line a point."""
+    """Return the condensed table as JSON, a line a point."""
     head = {
         "table": "coefficient_error_3d",
         "version": VERSION,
@@ -143,7 +148,7 @@ def write(path: Path, rows: Sequence[dict[str, Any]]) -> None:
 
 
 def equivalent_slope(rms_deg: float) -> float:
-    """Maximum slope (degrees) of a sinusoid of that rms slope: tan(rms) is tan(max) over root 2.
+    """Return the maximum slope (degrees) of a sinusoid of that rms slope: tan(rms) is tan(max) over root 2.
 
     >>> round(equivalent_slope(2.5), 2)
     3.53
@@ -152,7 +157,7 @@ def equivalent_slope(rms_deg: float) -> float:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Command line; exit status 0, or InputError for a table that is not the study's."""
+    """Run the command line; exit status 0, or InputError for a table that is not the study's."""
     parser = argparse.ArgumentParser(description="Condense the three-dimensional study's table.")
     parser.add_argument("study", type=Path)
     parser.add_argument("table", type=Path)

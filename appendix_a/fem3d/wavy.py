@@ -56,11 +56,11 @@ class Waviness:
         return np.cos(self.wavenumber * y) if self.kind is Kind.EGG_BOX else np.ones_like(y)
 
     def height(self, x: Array, y: Array) -> Array:
-        """z(x, y); any shape."""
+        """Return z(x, y); any shape."""
         return self.amplitude * np.cos(self._phase(x)) * self._across(y)
 
     def gradient(self, x: Array, y: Array) -> tuple[Array, Array]:
-        """(dz/dx, dz/dy) at (x, y)."""
+        """Return (dz/dx, dz/dy) at (x, y)."""
         rise = self.amplitude * self.wavenumber
         along = -rise * np.sin(self._phase(x)) * self._across(y)
         if self.kind is Kind.RIDGE:
@@ -68,7 +68,7 @@ class Waviness:
         return along, -rise * np.cos(self._phase(x)) * np.sin(self.wavenumber * y)
 
     def facet_edges(self, length: float = 1.0) -> tuple[float, float]:
-        """The x of the two points at arc length -+`length` from the origin, along y = 0."""
+        """Return the x of the two points at arc length -+`length` from the origin, along y = 0."""
 
         def arc(x: float) -> float:
             slope = self.amplitude * self.wavenumber

@@ -10,7 +10,8 @@ Real = NDArray[np.float64]
 
 
 def stresses(x: ArrayLike, y: ArrayLike) -> tuple[Real, Real, Real]:
-    """(sigma_x, sigma_y, tau_xy) of (A1) per unit pressure, tension positive; x, y in half-widths, y >= 0.
+    """Return (sigma_x, sigma_y, tau_xy) of (A1) per unit pressure, tension positive; x, y in half-widths, y
+    >= 0.
 
     ``theta_1, theta_2`` are the angles in [0, pi] at which the ends x = +1 and x = -1 see the point: (A1)'s
     ``tan theta = y / (x -+ a)`` alone leaves them open by pi, and the principal branch of arctan would be
@@ -24,12 +25,12 @@ def stresses(x: ArrayLike, y: ArrayLike) -> tuple[Real, Real, Real]:
 
 
 def flat_displacement(x: ArrayLike, nu: float) -> Real:
-    """u_y(x) - u_y(0) of the boundary, plane strain, in units of pressure times half-width over E."""
+    """Return u_y(x) - u_y(0) of the boundary, plane strain, in units of pressure times half-width over E."""
     return np.asarray(-2 * (1 - nu**2) / np.pi * logarithms(x))
 
 
 def logarithms(x: ArrayLike) -> Real:
-    """(x + 1) log|x + 1| - (x - 1) log|x - 1| to rounding, for every finite x.
+    """Return (x + 1) log|x + 1| - (x - 1) log|x - 1| to rounding, for every finite x.
 
     Near and far the two cancel, and ``log|x^2 - 1| + 2 x atanh(x or 1/x)`` takes their place.
     """

@@ -41,12 +41,12 @@ class Sinusoid:
         return float(np.tan(np.radians(self.slope_deg)) * self.wavelength / (2 * np.pi))
 
     def depth(self, offset: ArrayLike) -> Real:
-        """Depth of the boundary below the strip's centre, at horizontal offsets from it."""
+        """Return the depth of the boundary below the strip's centre, at horizontal offsets from it."""
         phase = np.pi * np.asarray(offset, dtype=float) / self.wavelength
         # sin^2(A + B) - sin^2(B) = sin(A + 2B) sin(A): no cancellation for short offsets
         return np.asarray(2 * self.amplitude * np.sin(phase + 2 * np.pi * self.position) * np.sin(phase))
 
     def slope(self, offset: ArrayLike) -> Real:
-        """Slope angle of the boundary, rad, positive where it goes down with x."""
+        """Return the slope angle of the boundary, rad, positive where it goes down with x."""
         phase = 2 * np.pi * (np.asarray(offset, dtype=float) / self.wavelength + self.position)
         return np.arctan(2 * np.pi * self.amplitude / self.wavelength * np.sin(phase))

@@ -35,7 +35,7 @@ class Theta(StrEnum):
 
 
 def pseudo_tractions(x: ArrayLike, profile: Sinusoid, theta: Theta) -> tuple[Real, Real]:
-    """(X, Y) of (A3) per unit pressure on the wavy line at x; ``profile`` has a crest at x = 0."""
+    """Return (X, Y) of (A3) per unit pressure on the wavy line at x; ``profile`` has a crest at x = 0."""
     x = np.asarray(x, dtype=float)
     sigma_x, sigma_y, tau = stresses(x, profile.depth(x))
     angle = profile.slope(x) - (np.pi / 2 if theta is Theta.NORMAL else 0.0)
@@ -44,7 +44,9 @@ def pseudo_tractions(x: ArrayLike, profile: Sinusoid, theta: Theta) -> tuple[Rea
 
 
 def applied(x: ArrayLike, profile: Sinusoid) -> tuple[Real, Real]:
-    """Traction of unit pressure along the local normal on |x| < 1, what the wavy line should carry."""
+    """Return the traction of unit pressure along the local normal on |x| < 1, what the wavy line should
+    carry.
+    """
     x = np.asarray(x, dtype=float)
     inside, slope = np.abs(x) < 1, profile.slope(x)
     return np.where(inside, -np.sin(slope), 0.0), np.where(inside, np.cos(slope), 0.0)
@@ -53,7 +55,7 @@ def applied(x: ArrayLike, profile: Sinusoid) -> tuple[Real, Real]:
 def printed(
     slope_deg: float, wavelength: float, nu: float, *, offsets: ArrayLike, theta: Theta = Theta.NORMAL
 ) -> tuple[Real, Real]:
-    """(wavy, flat) as ``first_order`` for a strip on a crest, by the paper's superposition.
+    """Return (wavy, flat) as ``first_order`` for a strip on a crest, by the paper's superposition.
 
     The pseudo tractions, plus the applied ones where (A3) would cancel the load itself, act on the flat
     boundary of a half-plane (Flamant). Exact to first order in the slope for ``Theta.NORMAL``, but for the
@@ -69,7 +71,8 @@ def printed(
 
 
 def flamant(x: float, s: Real, along: Real, down: Real, nu: float) -> float:
-    """Vertical displacement at x of a half-plane's boundary under forces (along, down) (n,) at s, E = 1.
+    """Return the vertical displacement at x of a half-plane's boundary under forces (along, down) (n,) at s,
+    E = 1.
 
     Up to the constant of the datum; Johnson 1985, Eqs (2.19) and (2.22).
     """
@@ -87,7 +90,7 @@ def _surface(x: float, profile: Sinusoid, theta: Theta, nu: float) -> float:
 
 
 def graded_nodes(centres: list[float], wavelength: float) -> tuple[Real, Real]:
-    """Gauss nodes and weights on panels that resolve the waves and shrink towards ``centres``."""
+    """Return Gauss nodes and weights on panels that resolve the waves and shrink towards ``centres``."""
     waves = np.arange(-REACH, REACH + 0.5 / PANELS_PER_WAVE, 1 / PANELS_PER_WAVE) * wavelength
     halves = 2.0 ** np.arange(np.ceil(np.log2(wavelength)), -FINEST, -1)
     graded = [np.concatenate([c - halves, [c], c + halves]) for c in centres]

@@ -25,7 +25,7 @@ R_RANGE = (1e-300, 1e300)
 def stresses(
     r: ArrayLike, theta: ArrayLike, gamma: float, half_width: float = 1.0
 ) -> tuple[Real, Real, Real]:
-    """Stresses (sigma_r, sigma_theta, tau_rtheta) in units of the face pressure, tension positive.
+    """Return the stresses (sigma_r, sigma_theta, tau_rtheta) in units of the face pressure, tension positive.
 
     ``r`` (distance from the tip, the unit of ``half_width``) and ``theta`` (rad) broadcast to the shape of
     the result; faces at ``theta = +-(pi/2 - gamma)``, the bisector ``theta = 0`` points into the body,
@@ -51,7 +51,8 @@ def stresses(
 def displacements(
     r: ArrayLike, theta: ArrayLike, gamma: float, nu: float, half_width: float = 1.0
 ) -> tuple[Real, Real]:
-    """Plane-strain displacements relative to the tip: (along the bisector, across it towards +theta).
+    """Return the plane-strain displacements relative to the tip: (along the bisector, across it towards
+    +theta).
 
     In units of face pressure times ``half_width`` over E; arguments and errors as for ``stresses``, and an
     InputError for a Poisson ratio ``nu`` outside [0, 1/2]. The bisector does not turn (symmetry), so the

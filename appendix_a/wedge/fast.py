@@ -48,12 +48,12 @@ class Line:
     n: int
 
     def nodes(self) -> Complex:
-        """The upper half, k = 0..n; the lower one is its complex conjugate."""
+        """Return the upper half, k = 0..n; the lower one is its complex conjugate."""
         return np.asarray(self.c + 1j * self.h * np.arange(self.n + 1), dtype=np.complex128)
 
 
 def line_for(log_r: Real, gamma: float) -> Line:
-    """The line that serves all given log(r) at once; they have one sign where |log r| > DAMPED_RANGE.
+    """Return the line that serves all given log(r) at once; they have one sign where |log r| > DAMPED_RANGE.
 
     Raises InputError for a wedge so narrow that the sum would take more than MOST_NODES.
     """
@@ -69,7 +69,7 @@ def line_for(log_r: Real, gamma: float) -> Line:
 
 
 def laurent_sums(line: Line, upper: Complex, log_zeta: Complex) -> Complex:
-    """(1/2 pi i) int g(z) zeta^(-z) dz for each row g of ``upper`` (m, n + 1); result (m, points).
+    """Return (1/2 pi i) int g(z) zeta^(-z) dz for each row g of ``upper`` (m, n + 1); result (m, points).
 
     ``g(conj z) = conj g(z)``, so the upper half of the line holds all values. Horner's scheme alone would
     raise the rounding error of ``exp(-i h log zeta)`` to the power n (4e-13 at gamma = 1.5); after
@@ -91,7 +91,7 @@ def laurent_sums(line: Line, upper: Complex, log_zeta: Complex) -> Complex:
 
 
 def groups(log_r: Real) -> list[NDArray[np.bool_]]:
-    """Masks of the points that share a line: near the tip, in between, far away."""
+    """Return masks of the points that share a line: near the tip, in between, far away."""
     near, far = log_r < -DAMPED_RANGE, log_r > DAMPED_RANGE
     return [mask for mask in (near, ~(near | far), far) if mask.any()]
 
@@ -100,17 +100,17 @@ Rows = Callable[[Complex, Complex, Complex], list[Complex]]
 
 
 def stress_rows(z: Complex, r_s: Complex, r_t: Complex) -> list[Complex]:
-    """Contributions of R_S and R_T to phi', zeta phi'', psi'."""
+    """Return the contributions of R_S and R_T to phi', zeta phi'', psi'."""
     return [r_s / (1 + z), -r_s, -r_t]
 
 
 def displacement_rows(z: Complex, r_s: Complex, r_t: Complex) -> list[Complex]:
-    """Contributions of R_S and R_T to phi/zeta, phi', psi/zeta."""
+    """Return the contributions of R_S and R_T to phi/zeta, phi', psi/zeta."""
     return [-r_s / (z * (1 + z)), r_s / (1 + z), r_t / z]
 
 
 def remainder_sums(rows: Rows, r: Real, theta: Real, gamma: float) -> Complex:
-    """The integrals of ``rows`` over the line, shape (3, n), at points r, theta of shape (n,)."""
+    """Return the integrals of ``rows`` over the line, shape (3, n), at points r, theta of shape (n,)."""
     log_zeta = np.log(r) + 1j * theta
     sums = np.empty((3, r.size), dtype=np.complex128)
     for mask in groups(log_zeta.real):
@@ -122,7 +122,7 @@ def remainder_sums(rows: Rows, r: Real, theta: Real, gamma: float) -> Complex:
 
 
 def angle_from_face(theta: Real, gamma: float) -> tuple[Real, Real]:
-    """``delta = pi/2 - gamma - theta``, not less than zero, and its sine, both to relative rounding.
+    """Return ``delta = pi/2 - gamma - theta``, not less than zero, and its sine, both to relative rounding.
 
     pi/2 is taken in two parts; a theta that rounds to the face (within one unit in the last place) is on it.
     Beyond pi/2 the sine is that of ``pi - delta``, which for small gamma is small too.
@@ -136,7 +136,7 @@ def angle_from_face(theta: Real, gamma: float) -> tuple[Real, Real]:
 
 
 def half_plane(r: Real, delta: Real, sine: Real) -> tuple[Real, Complex]:
-    """(sigma_r + sigma_theta, sigma_theta - sigma_r + 2i tau) of a half-plane pressed on 0 < r < 1.
+    """Return (sigma_r + sigma_theta, sigma_theta - sigma_r + 2i tau) of a half-plane pressed on 0 < r < 1.
 
     ``delta`` is the angle from that edge, 0 <= delta <= pi, ``sine`` its sine; the shear is counted with
     the angle growing towards it. These are the integrals of the subtracted kernels: ``(2/pi) Im log(1 -
@@ -152,7 +152,9 @@ def half_plane(r: Real, delta: Real, sine: Real) -> tuple[Real, Complex]:
 
 
 def unit_stresses(r: Real, theta: Real, gamma: float) -> tuple[Real, Real, Real]:
-    """(sigma_r, sigma_theta, tau_rtheta) at points of shape (n,), unit pressure on 0 < r < 1 of the faces."""
+    """Return (sigma_r, sigma_theta, tau_rtheta) at points of shape (n,), unit pressure on 0 < r < 1 of the
+    faces.
+    """
     alpha = np.pi / 2 - gamma
     limit = np.abs(np.log(r)) > (FAR * alpha if alpha <= NARROW else np.inf)
     if limit.any():
@@ -171,13 +173,14 @@ def unit_stresses(r: Real, theta: Real, gamma: float) -> tuple[Real, Real, Real]
 
 
 def limit_stresses(r: Real, theta: Real, alpha: float) -> tuple[Real, Real, Real]:
-    """Uniform pressure near the tip, and far away the resultant's radial field (Michell 1900)."""
+    """Return uniform pressure near the tip, and far away the resultant's radial field (Michell 1900)."""
     radial = -4 * np.sin(alpha) * np.cos(theta) / ((2 * alpha + np.sin(2 * alpha)) * r)
     return np.where(r < 1, -1.0, radial), np.where(r < 1, -1.0, 0.0), np.zeros(r.shape)
 
 
 def unit_displacements(r: Real, theta: Real, gamma: float, nu: float) -> tuple[Real, Real]:
-    """(u along the bisector, u across it) at points of shape (n,) relative to the tip, unit pressure over E.
+    """Return (u along the bisector, u across it) at points of shape (n,) relative to the tip, unit pressure
+    over E.
 
     ``E u = (1 + nu) {kappa phi - zeta conj(phi') - conj(psi)}``, kappa = 3 - 4 nu. The elementary parts of
     phi and psi are ``zeta log(1 - b/zeta) - b log(1 - zeta/b)`` and ``-conj(b) log(1 - zeta/b)`` over 2 pi

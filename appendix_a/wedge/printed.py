@@ -36,7 +36,7 @@ class Printed:
 
 
 def kernels(xi: Real, theta: float, gamma: float) -> tuple[Real, Real, Real]:
-    """P, Q, T of (A7)-(A9), xi > 0 inside the hyperbolic functions' arguments.
+    """Return P, Q, T of (A7)-(A9), xi > 0 inside the hyperbolic functions' arguments.
 
     Numerators and denominator are scaled by ``2 exp(-(pi - 2 gamma) xi)``, which keeps them finite.
     """
@@ -53,14 +53,14 @@ def kernels(xi: Real, theta: float, gamma: float) -> tuple[Real, Real, Real]:
 
 
 def literal_p(xi: float, theta: float, gamma: float) -> float:
-    """P of (A7) to the letter: every hyperbolic function multiplied by xi."""
+    """Return P of (A7) to the letter: every hyperbolic function multiplied by xi."""
     plus, minus = np.pi / 2 - gamma + theta, np.pi / 2 - gamma - theta
     above = np.cos(gamma + theta) * np.cosh(plus) * xi + np.cos(gamma - theta) * np.cosh(minus) * xi
     return float(above / (xi * np.sin(2 * gamma) + np.sinh(np.pi - 2 * gamma) * xi))
 
 
 def stresses(r: float, theta: float, gamma: float, sign: int = PRINTED_SIGN) -> Printed:
-    """(A4)-(A6) with a = 1, strictly between the faces; ``sign`` is that of the first term of (A5)."""
+    """Return (A4)-(A6) with a = 1, strictly between the faces; ``sign`` is that of the first term of (A5)."""
     coarse, fine = (_integrals(r, theta, gamma, width) for width in (1.0, 0.5))
     difference, total, shear = fine
     radial = np.pi * np.cos(gamma) * np.cos(theta) / (np.pi - 2 * gamma + np.sin(2 * gamma))

@@ -38,7 +38,9 @@ class Reference:
 
 
 def kernels(z: Any, theta: Any, gamma: Any) -> tuple[Any, Any, Any]:
-    """Mellin kernels of r (sigma_r, sigma_theta, tau): ``r sigma = (1/2 pi i) int kernel(z) r^-z dz``."""
+    """Return the Mellin kernels of r (sigma_r, sigma_theta, tau): ``r sigma = (1/2 pi i) int kernel(z) r^-z
+    dz``.
+    """
     alpha = mp.pi / 2 - gamma
     d = mp.sin(2 * alpha * z) + z * mp.sin(2 * alpha)
     plus, minus = mp.sin((1 + z) * alpha), mp.sin((1 - z) * alpha)
@@ -48,7 +50,7 @@ def kernels(z: Any, theta: Any, gamma: Any) -> tuple[Any, Any, Any]:
 
 
 def stresses(r: Any, theta: Any, gamma: Any, digits: int = 30) -> Reference:
-    """Stresses of unit pressure on 0 < r < 1 of both faces, to ``digits`` digits after the point.
+    """Return the stresses of unit pressure on 0 < r < 1 of both faces, to ``digits`` digits after the point.
 
     Any point but the ends of the load (r = 1 on a face). Raises NotConverged.
     """

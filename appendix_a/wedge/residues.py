@@ -16,7 +16,7 @@ from appendix_a.wedge.reference import GUARD
 
 
 def wedge_zeros(gamma: Any, n: int) -> list[Any]:
-    """The n-th pair of roots w of sin w = -k w; of a complex pair the one above the real axis."""
+    """Return the n-th pair of roots w of sin w = -k w; of a complex pair the one above the real axis."""
     alpha = mp.pi / 2 - mp.mpf(gamma)
     k = mp.sin(2 * alpha) / (2 * alpha)
     low, high = (2 * n - 1) * mp.pi, 2 * n * mp.pi
@@ -34,7 +34,7 @@ def wedge_zeros(gamma: Any, n: int) -> list[Any]:
 
 
 def stresses(r: Any, theta: Any, gamma: Any, digits: int = 30, pairs: int = 400) -> tuple[Any, Any, Any]:
-    """(sigma_r, sigma_theta, tau) of unit pressure on 0 < r < 1 of both faces, gamma > 0, r != 1.
+    """Return (sigma_r, sigma_theta, tau) of unit pressure on 0 < r < 1 of both faces, gamma > 0, r != 1.
 
     Ends when a pair adds less than 10^-digits; raises ArithmeticError when ``pairs`` do not suffice.
     """

@@ -28,7 +28,7 @@ Complex = NDArray[np.complex128]
 
 
 def remainders(z: Complex, gamma: float) -> tuple[Complex, Complex]:
-    """The remainder kernels (R_S, R_T) of the module's head at points z with Im z >= 0.
+    """Return the remainder kernels (R_S, R_T) of the module's head at points z with Im z >= 0.
 
         R_S = {sin(alpha (1+z)) sin(2 gamma z) - z sin(2 gamma) sin(alpha (1+z) - pi z)} / (D sin(pi z))
         R_T = {sin(alpha (1-z)) sin(2 gamma z) - z sin(2 gamma) sin(alpha (1-z) + pi z)} / (D sin(pi z))

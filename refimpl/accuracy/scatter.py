@@ -24,7 +24,7 @@ _RISING, _NARROW = 4, 5  # first kinds of faces to which pressures do not fall, 
 AREA_SCATTER = table("area_scatter")  # elements, of each of `area_counts`
 _GAP_STRAIGHT = 3.5  # scatter of a gap's straight edges, over an area's
 PLASTIC_LACK = constant("plastic_lack")  # area that yields in part, over that of the edge
-PLASTIC_SCATTER = table("plastic_scatter")  # of each of `plastic_sizes`
+PLASTIC_SCATTER = table("plastic_scatter")  # scatter at each of `plastic_sizes`
 PLASTIC_FREEDOM = constant("plastic_freedom")  # weight of the prior
 
 

@@ -133,12 +133,14 @@ class EnergyNorm:
         return _ROUNDING * self._reach * sum(float(np.linalg.norm(t)) for t in tractions)
 
     def norm(self, e: Array) -> float:
-        """``||e||`` from above."""
+        """Return ``||e||`` from above."""
         square = float(np.vdot(e, self.apply(e))) + float(np.linalg.norm(e)) * self.rounding(e)
         return math.sqrt(max(square, 0.0))
 
     def solve(self, right: Array, where: Mask) -> tuple[Array, Array]:
-        """``z`` and ``a z`` with ``a z`` about ``right`` on the marked elements, ``z = 0`` elsewhere: CG."""
+        """Return ``z`` and ``a z`` with ``a z`` about ``right`` on the marked elements, ``z = 0`` elsewhere:
+        CG.
+        """
         z = np.zeros_like(right)
         residual = np.where(where, right, 0.0)
         direction, product = z, 0.0
@@ -157,7 +159,7 @@ class EnergyNorm:
         return z, self.apply(z)
 
     def dual_norm(self, right: Array, where: Mask) -> float:
-        """Upper bound of ``|right.e| / ||e||`` over all e that vanish off the marked elements.
+        """Return an upper bound of ``|right.e| / ||e||`` over all e that vanish off the marked elements.
 
         With ``right = a z + r`` there, its square is ``z.a z + 2 z.r + r.(a^-1) r``, and the last term is at
         most ``|r|^2`` over the smallest eigenvalue: true whatever z is.

@@ -101,7 +101,7 @@ NO_BOUND_PERIODIC = "a periodic scene's approach does not bound its mean pressur
 
 
 def proven_bounds(problem: Problem, pressure: Array, traction: Array, slopes: Slopes) -> Bounds:
-    """Bounds for any pressure and traction (Pa) of the problem's shape, at these slopes.
+    """Return bounds for any pressure and traction (Pa) of the problem's shape, at these slopes.
 
     Costs some tens of products with ``a``. Where nothing can be proven all are infinite, and ``unproven``
     says why.
@@ -180,7 +180,7 @@ class _Frozen:
         self.r, self.slack = r, float(np.vdot(self.f, self.w - r))
 
     def distance(self) -> tuple[float, float]:
-        """Bounds on ``||e||`` and on the approach's error (m); infinite when (B2) does not close."""
+        """Return bounds on ``||e||`` and on the approach's error (m); infinite when (B2) does not close."""
         problem, beta = self.problem, self.slope
         if problem.load is None:
             return _largest_root(1.0, self.residual, self.slack), 0.0
@@ -238,7 +238,7 @@ class _Capped(_Frozen):
         self.slack = 0.0
 
     def distance(self) -> tuple[float, float]:
-        """``||e||``, and the approach's error from the elements that are proven to be free (m)."""
+        """Return ``||e||``, and the approach's error from the elements that are proven to be free (m)."""
         problem, x = self.problem, self.residual
         lawful = bool(self.f.min() >= 0 and self.f.max() <= problem.cap)
         if problem.load is None:

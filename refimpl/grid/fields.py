@@ -60,11 +60,24 @@ def _along_first_axis(values: Array, count: int) -> Array:
         return means
     if n == 1:
         return np.repeat(values, count, axis=0)
+    if count == 2 * n:
+        return _doubled(values)
     place = np.clip((np.arange(count) + 0.5) * (n / count) - 0.5, 0, n - 1)
     left = np.minimum(place.astype(np.intp), n - 2)
     share = (place - left)[:, None]
     found: Array = (1 - share) * values[left]
     found += share * values[left + 1]
+    return found
+
+
+def _doubled(values: Array) -> Array:
+    """Two rows for one: a weighted sum at general places, to the last bit, in half its time."""
+    n, m = values.shape
+    found = np.empty((2 * n, m), order="C" if values.flags.c_contiguous else "F")
+    found[0], found[-1] = values[0], values[-1]
+    near, far = 0.75 * values, 0.25 * values
+    np.add(near[:-1], far[1:], out=found[1:-1:2])
+    np.add(far[:-1], near[1:], out=found[2::2])
     return found
 
 

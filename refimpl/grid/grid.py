@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
+import scipy
 
 from refimpl.errors import InputError, is_whole, require_size
 from refimpl.grid.fields import Array, Mask, differences
@@ -137,6 +138,16 @@ class Grid:
         size."""
         scale = 1 if self.periodic else 2
         return scale * self.shape[0], scale * self.shape[1]
+
+    def transform_shape_near(self, where: Mask) -> tuple[int, int]:
+        """Return the shape of a transform of which only the marked elements are wanted, the sources of most.
+
+        It has an empty margin of their own size.
+        """
+        if self.periodic:
+            return self.shape
+        nx, ny = Window.around(where, margin=0).shape
+        return scipy.fft.next_fast_len(self.shape[0] + nx), scipy.fft.next_fast_len(self.shape[1] + ny)
 
     def about_datum(self, heights: Array, weights: Array) -> Array:
         """Return heights about their mean plane on a periodic grid, about their weighted mean on a free one.

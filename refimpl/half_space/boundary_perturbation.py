@@ -62,12 +62,7 @@ class Contact:
     @property
     def transform_shape(self) -> tuple[int, int]:
         """Shape of the fields' Fourier transforms: no image of the contact touches what is wanted."""
-        grid = self.grid
-        if grid.periodic or not self.near:
-            return grid.transform_shape
-        box = grid.window_around(self.pressure > 0, margin=0).shape
-        nx, ny = (scipy.fft.next_fast_len(n + own) for n, own in zip(grid.shape, box, strict=True))
-        return nx, ny
+        return self.grid.transform_shape_near(self.pressure > 0) if self.near else self.grid.transform_shape
 
 
 def gap_changes(contact: Contact) -> tuple[Array, Array]:

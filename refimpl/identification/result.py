@@ -39,7 +39,7 @@ class Prediction:
     mu: Interval
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Identification:
     """Result of `identify`.
 
@@ -74,6 +74,16 @@ class Identification:
     proposal: Proposal | None = None
     warnings: tuple[str, ...] = ()
     solves: int = 0
+
+    def __repr__(self) -> str:
+        names = [*self.values, f"{self.factor:.3g} tau + beta"]
+        rows = zip(names, [*self.values.values(), self.combination], strict=True)
+        wide = max(map(len, names))
+        lines = [f"{name:<{wide}}  {one.value:.4g}  ({one.low:.4g} to {one.high:.4g})" for name, one in rows]
+        lines += [f"load {p.load:.4g} N: mu {p.mu.value:.4g} ({p.mu.low:.4g} to {p.mu.high:.4g})"
+                  for p in self.predictions]  # fmt: skip
+        lines.append(f"chi-square {self.chi_square:.3g} of {self.degrees}; 95 % intervals by {self.method}")
+        return "\n".join(lines + [f"warning: {text}" for text in self.warnings])
 
     @property
     def outliers(self) -> tuple[int, ...]:

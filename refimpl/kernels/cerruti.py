@@ -32,18 +32,20 @@ _FLOOR = 1e-150  # length whose square must not underflow; t log(length / t) van
 
 
 def over_x(s: Array, y: Array, dy: float) -> Array:
-    """Angle that the element's width dy subtends at x-offset ``s >= 0``: integral of s/rho^2 over y."""
+    """Return the angle that the element's width dy subtends at x-offset ``s >= 0``: integral of s/rho^2 over
+    y.
+    """
     return np.arctan2(s * dy, s * s + (y - dy / 2) * (y + dy / 2))
 
 
 def over_y(t: Array, x: Array, dx: float) -> Array:
-    """Integral of s/rho^2 over x at the y-offset ``t``, from ``x >= 0``."""
+    """Return the integral of s/rho^2 over x at the y-offset ``t``, from ``x >= 0``."""
     near = x - dx / 2
     return 0.5 * np.log1p(2 * dx * x / (near * near + t * t))
 
 
 def closed_form(x: Array, y: Array, dx: float, dy: float) -> Array:
-    """The integral over the whole rectangle, from ``x, y >= 0`` anywhere."""
+    """Return the integral over the whole rectangle, from ``x, y >= 0`` anywhere."""
     half = dx / 2
     far, near = x + half, np.abs(x - half)
     below, above = y - dy / 2, y + dy / 2

@@ -29,7 +29,8 @@ _TINY = float(np.finfo(np.float64).tiny)
 
 
 def strip(centre: Array, t: Array, length: float) -> Array:
-    """Integral of 1/rho along a segment, seen from ``t > 0`` off its line, ``centre >= 0`` along it.
+    """Return the integral of 1/rho along a segment, seen from ``t > 0`` off its line, ``centre >= 0`` along
+    it.
 
     >>> bool(np.isclose(strip(np.array(0.0), np.array(1.0), 2.0), 2 * np.arcsinh(1.0), rtol=1e-15))
     True
@@ -43,7 +44,9 @@ def strip(centre: Array, t: Array, length: float) -> Array:
 
 
 def weighted_edge(centre: Array, t: Array, length: float) -> Array:
-    """``t * strip`` of an edge at signed distance ``t``, 0 on its line; safe where ``t^2`` underflows."""
+    """Return ``t * strip`` of an edge at signed distance ``t``, 0 on its line; safe where ``t^2``
+    underflows.
+    """
     distance = np.abs(t)
     near_end, far_end = centre - length / 2, centre + length / 2
     near_reach = np.maximum(np.hypot(near_end, distance) + np.abs(near_end), _TINY)
@@ -56,19 +59,19 @@ def weighted_edge(centre: Array, t: Array, length: float) -> Array:
 
 
 def closed_form(x: Array, y: Array, dx: float, dy: float) -> Array:
-    """The integral over the whole rectangle, from ``x, y >= 0`` anywhere, as four edges."""
+    """Return the integral over the whole rectangle, from ``x, y >= 0`` anywhere, as four edges."""
     across = weighted_edge(y, x + dx / 2, dy) - weighted_edge(y, x - dx / 2, dy)
     along = weighted_edge(x, y + dy / 2, dx) - weighted_edge(x, y - dy / 2, dx)
     return across + along
 
 
 def over_x(s: Array, y: Array, dy: float) -> Array:
-    """Inner integral over y at the x-offset ``s``: what the outer quadrature over x sums."""
+    """Return the inner integral over y at the x-offset ``s``: what the outer quadrature over x sums."""
     return strip(y, s, dy)
 
 
 def over_y(t: Array, x: Array, dx: float) -> Array:
-    """Inner integral over x at the y-offset ``t``: what the outer quadrature over y sums."""
+    """Return the inner integral over x at the y-offset ``t``: what the outer quadrature over y sums."""
     return strip(x, t, dx)
 
 

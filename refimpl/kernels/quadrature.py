@@ -70,7 +70,9 @@ def relative_error_bound(order: int, q: float) -> float:
 
 @cache
 def reach(order: int) -> float:
-    """Smallest ``q >= NEAR`` from which ``order`` points stay within ``TRUNCATION``, by bisection."""
+    """Return the smallest ``q >= NEAR`` from which ``order`` points stay within ``TRUNCATION``, by
+    bisection.
+    """
     low, high = NEAR, 1e9
     if relative_error_bound(order, low) <= TRUNCATION:
         return low
@@ -82,19 +84,19 @@ def reach(order: int) -> float:
 
 @cache
 def rule(order: int) -> Rule:
-    """The ``order``-point Gauss-Legendre rule."""
+    """Return the ``order``-point Gauss-Legendre rule."""
     return Rule(*np.polynomial.legendre.leggauss(order))
 
 
 @cache
 def order_for(q: float) -> int:
-    """Fewest points that suffice from ``q >= NEAR`` on."""
+    """Return the fewest points that suffice from ``q >= NEAR`` on."""
     return min(order for order in ORDERS if reach(order) <= q)
 
 
 @cache
 def shells() -> list[tuple[float, float, int]]:
-    """``(q_from, q_to, order)``: the fewest points that suffice, from ``NEAR`` to infinity."""
+    """Return ``(q_from, q_to, order)``: the fewest points that suffice, from ``NEAR`` to infinity."""
     starts = sorted({reach(order) for order in ORDERS})
     return [(low, high, order_for(low)) for low, high in zip(starts, [*starts[1:], np.inf], strict=True)]
 
@@ -102,7 +104,9 @@ def shells() -> list[tuple[float, float, int]]:
 def across(
     inner: Integrand, outer: Array, other: Array, edge_outer: float, edge_other: float, order: int
 ) -> Array:
-    """Quadrature of ``inner`` over the element's extent about the offsets ``outer``; shapes broadcast."""
+    """Return the quadrature of ``inner`` over the element's extent about the offsets ``outer``; shapes
+    broadcast.
+    """
     half = edge_outer / 2
     nodes, weights = rule(order)
     axes = np.broadcast(outer, other).ndim

@@ -26,7 +26,8 @@ _SLAB = 16384  # evaluations: 128 kB per temporary
 
 
 def normal_table(n: int, m: int, dx: float, dy: float | None = None, *, known: Array | None = None) -> Array:
-    """``normal_integral(i dx, j dy, dx, dy)`` for ``i < n``, ``j < m``: shape ``(n, m)``, unit of ``dx``.
+    """Return ``normal_integral(i dx, j dy, dx, dy)`` for ``i < n``, ``j < m``: shape ``(n, m)``, unit of
+    ``dx``.
 
     ``dy = dx`` by default; ``known`` is a smaller table of the same elements, to start from: the result is
     the same to the last bit. Extend evenly to negative offsets. Same accuracy and errors as
@@ -51,7 +52,8 @@ def normal_table(n: int, m: int, dx: float, dy: float | None = None, *, known: A
 def tangential_table(
     n: int, m: int, dx: float, dy: float | None = None, *, known: Array | None = None
 ) -> Array:
-    """``tangential_integral(i dx, j dy, dx, dy)`` for ``i < n``, ``j < m``: shape ``(n, m)``, unit of ``dx``.
+    """Return ``tangential_integral(i dx, j dy, dx, dy)`` for ``i < n``, ``j < m``: shape ``(n, m)``, unit of
+    ``dx``.
 
     ``dy = dx`` by default; ``known`` as for `normal_table`. Extend oddly in x, evenly in y. Same accuracy
     and errors as ``tangential_integral``.

@@ -1,4 +1,4 @@
-"""Areal roughness parameters of a measured map: heights, slopes, autocorrelation, spectrum.
+"""Areal roughness parameters of a measured map: heights, slopes, autocorrelation.
 
 ``z[i, j]`` (m) is a levelled map, missing points NaN; ``pixel`` its spacings (m). Everything is a mean over
 the points, or the pairs of points, that were measured. Names as in ISO 25178-2.
@@ -14,23 +14,33 @@ import scipy
 from numpy.typing import NDArray
 
 from refimpl.grid import Array
-from refimpl.measured.missing_points import fill
 from refimpl.surfaces.noise_lattice import DECAY
 from refimpl.surfaces.statistics import kurtosis, rms_height, skewness
 
 Pixel = tuple[float, float]
-SLOPES = 1e-5, 10.0  # rms slopes of machined, polished and worn surfaces lie between; um for m is 1e6
+SLOPES = 1e-4, 10.0  # rms slopes of machined, polished and worn surfaces lie between; um for m is 1e6
 ISOTROPIC = 1.1  # ratio of correlation lengths up to which a map counts as isotropic, or by chance:
 BY_CHANCE = 3.0  # times the correlation length over the root of the area: two of the ratio's deviations
 DIRECTIONS = 180  # directions of the half-circle in which the autocorrelation is followed
 
 
 def height_parameters(z: Array) -> dict[str, float]:
-    """Sq, Sa, Sz (m), Ssk, Sku about the mean height."""
+    """Sq, Sa, Sp, Sv, Sz (m), Ssk, Sku about the mean height."""
     d = z[np.isfinite(z)] - np.nanmean(z)
     sq = rms_height(d)
     third, fourth = (skewness(d), kurtosis(d)) if sq > 0 else (math.nan, math.nan)
-    return {"Sq": sq, "Sa": float(np.abs(d).mean()), "Sz": float(np.ptp(d)), "Ssk": third, "Sku": fourth}
+    high, low = float(d.max()), float(-d.min())
+    mean = float(np.abs(d).mean())
+    return {"Sq": sq, "Sa": mean, "Sp": high, "Sv": low, "Sz": high + low, "Ssk": third, "Sku": fourth}
+
+
+def developed_area(z: Array, pixel: Pixel) -> float:
+    """Sdr: surface over its projection, less one; the mean of both ways to cut a cell into triangles."""
+    along, across = np.diff(z, axis=0) / pixel[0], np.diff(z, axis=1) / pixel[1]
+    ends = slice(1, None), slice(None, -1)
+    corners = [np.hypot(along[:, j], across[i]) for i in ends for j in ends]
+    cells = np.mean([np.sqrt(1.0 + slope**2) for slope in corners], axis=0)
+    return float(np.nanmean(cells)) - 1.0 if np.isfinite(cells).any() else math.nan
 
 
 def mean_square_slopes(z: Array, pixel: Pixel) -> Pixel:
@@ -57,7 +67,7 @@ def nayak(z: Array, pixel: Pixel) -> float:
     return float(np.nanvar(z)) * m4 / m2**2 if m2 > 0 else math.nan
 
 
-def _power(transform: NDArray[np.complex128]) -> Array:
+def squared(transform: NDArray[np.complex128]) -> Array:
     """Squares of the magnitudes; ``abs`` would take roots and another array."""
     power = transform.real**2
     power += transform.imag**2
@@ -90,7 +100,7 @@ class Autocorrelation:
         shape = tuple(scipy.fft.next_fast_len(n + m, real=True) for n, m in zip(z.shape, reach, strict=True))
         order = np.ix_(*(np.arange(-m, m + 1) for m in reach))
         products, pairs = (
-            scipy.fft.irfft2(_power(scipy.fft.rfft2(values, s=shape)), s=shape)[order]
+            scipy.fft.irfft2(squared(scipy.fft.rfft2(values, s=shape)), s=shape)[order]
             for values in (d, known)
         )
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -161,63 +171,3 @@ class Autocorrelation:
         area = math.prod((n - 1) * edge for n, edge in zip(self.values.shape, self.pixel, strict=True))
         chance = 1.0 + BY_CHANCE * mean * math.sqrt(DECAY / area)
         return (mean, mean, angle) if long / short < max(ISOTROPIC, chance) else (long, short, angle)
-
-
-@dataclass(frozen=True)
-class Spectrum:
-    """Two-dimensional power spectral density, ``<h^2> = (2 pi)^-2 int C d^2q``, averaged over rings of q.
-
-    q      rad/m, of the elliptic norm ``sqrt(g^2 q_along^2 + q_across^2)``, g = 1: circles
-    C      m^4; ``count``: how many points of the transform each ring averages
-    """
-
-    q: Array
-    C: Array
-    count: NDArray[np.intp]
-
-    @classmethod
-    def of(cls, z: Array, pixel: Pixel, anisotropy: float = 1.0, lay: float = 0.0) -> Spectrum:
-        """Hann's window on both axes; missing points count as the mean height."""
-        windows = [np.sin(np.pi * (np.arange(n) + 0.5) / n) ** 2 for n in z.shape]
-        known = np.isfinite(z)
-        weighted = np.where(known, z - np.nanmean(z), 0.0)
-        weighted *= windows[0][:, None]
-        weighted *= windows[1]
-        power = _power(scipy.fft.fft2(weighted))
-        power *= pixel[0] * pixel[1] / float(windows[0] ** 2 @ known @ windows[1] ** 2)
-        qx, qy = (2 * np.pi * scipy.fft.fftfreq(n, edge) for n, edge in zip(z.shape, pixel, strict=True))
-        cos, sin = math.cos(lay), math.sin(lay)
-        along = anisotropy * (cos * qx[:, None] + sin * qy[None, :])
-        norm = np.hypot(along, cos * qy[None, :] - sin * qx[:, None], out=along)
-        step = 2 * np.pi * max(1.0 / (n * edge) for n, edge in zip(z.shape, pixel, strict=True))
-        last = math.pi / max(pixel)  # beyond, rings are cut by the square of the transform
-        ring = np.minimum(np.rint(norm / step), last / step + 1).astype(np.intp)
-        count = np.bincount(ring.ravel())
-        totals = [np.bincount(ring.ravel(), values.ravel(), len(count)) for values in (power, norm)]
-        use = np.flatnonzero(
-            (count > 0) & (np.arange(len(count)) >= 1) & (np.arange(len(count)) * step <= last)
-        )
-        return cls(totals[1][use] / count[use], totals[0][use] / count[use], count[use])
-
-    def slope(self, longest: float, shortest: float) -> tuple[float, float]:
-        """Slope d ln C / d ln q between two wavelengths (m), its standard deviation by the scatter about it.
-
-        Least squares, each ring by its logarithmic width; NaN of fewer than four rings.
-        """
-        use = (self.q > 2 * np.pi / longest) & (self.q < 2 * np.pi / shortest) & (self.C > 0)
-        if np.count_nonzero(use) < 4:
-            return math.nan, math.nan
-        q, C = np.log(self.q[use]), np.log(self.C[use])
-        line, covariance = np.polyfit(q, C, 1, w=self.q[use] ** -0.5, cov=True)
-        return float(line[0]), math.sqrt(max(float(covariance[0, 0]), 0.0))
-
-
-def fill_error(filled: Array, missing: NDArray[np.bool_], pixel: Pixel) -> Array:
-    """Error (m) of filling such holes: that of holes of the same pattern half a map away, moved back.
-
-    There the filled map is the truth.
-    """
-    half = tuple(n // 2 for n in filled.shape)
-    holes = np.roll(missing, half, (0, 1))
-    error = fill(np.where(holes, np.nan, filled), pixel) - filled
-    return np.roll(error, tuple(-n for n in half), (0, 1))

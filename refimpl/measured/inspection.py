@@ -13,16 +13,17 @@ import numpy as np
 from refimpl.grid import Array
 from refimpl.measured.areal_parameters import (
     Autocorrelation,
-    Spectrum,
-    fill_error,
+    developed_area,
     height_parameters,
     implausible_slope,
     mean_square_slopes,
     nayak,
 )
+from refimpl.measured.material_ratio import core_parameters, material_ratio
 from refimpl.measured.measured_surface import MeasuredSurface
 from refimpl.measured.missing_points import fill
 from refimpl.measured.roughness_fit import RoughnessFit, fit_roughness
+from refimpl.measured.spectrum import NORMALISATION, Spectrum, fill_error, texture_direction
 from refimpl.measured.standing_out import standing_out
 from refimpl.surfaces.surface import pixel_edges
 
@@ -38,12 +39,19 @@ PARAMETERS = {
     "Sdq": ("rms gradient, of neighbouring points", ""),
     "Sal": ("shortest distance to an autocorrelation of 0.2", "m"),
     "Str": ("texture aspect ratio (isotropic: 1)", ""),
+    "Sp": ("highest point above the mean", "m"),
+    "Sv": ("lowest point below the mean", "m"),
+    "Sdr": ("developed area over the projected one, less one", ""),
+    "Sk": ("depth of the core of the bearing curve", "m"),
+    "Spk": ("reduced peaks above it", "m"),
+    "Svk": ("reduced dales below it", "m"),
+    "Std": ("direction of the waves with most power, across the lay", "deg"),
     "l10_across": ("shortest distance to an autocorrelation of 10 %", "m"),
     "l10_along": ("longest", "m"),
     "le_across": ("shortest distance to an autocorrelation of 1/e", "m"),
     "le_along": ("longest", "m"),
     "lay_deg": ("direction of slowest decay from x, anticlockwise", "deg"),
-    "psd_slope": ("d ln C / d ln q below the 1/e length", ""),
+    "psd_slope": ("d ln C / d ln q below pi times the 1/e length", ""),
     "hurst": ("from that slope, -(slope + 2) / 2", ""),
     "nayak": ("m0 m4 / m2^2 (Gaussian autocorrelation: 3)", ""),
 }
@@ -83,6 +91,8 @@ class Inspection:
         """Roughness parameters by the names of PARAMETERS."""
         found = height_parameters(self.z)
         found["Sdq"] = math.sqrt(sum(mean_square_slopes(self.z, self.pixel)))
+        found["Sdr"] = developed_area(self.z, self.pixel)
+        found |= core_parameters(self.z)
         fall = self.autocorrelation.distances(SAL_LEVEL)
         complete = bool(np.isfinite(fall).all())
         found["Sal"] = float(np.nanmin(fall)) if np.isfinite(fall).any() else math.nan
@@ -93,6 +103,8 @@ class Inspection:
             found[f"{name}_along"] = float(away.max())  # NaN where one direction does not fall so far
         long, short, lay = self.autocorrelation.lay()
         found["lay_deg"] = round(math.degrees(lay), 1) % 180.0 if long > short else math.nan
+        direction = texture_direction(self.z, self.pixel) if long > short else math.nan
+        found["Std"] = math.degrees(direction)
         slope = self._psd_slope[0]
         found |= {"psd_slope": slope, "hurst": -(slope + 2.0) / 2.0, "nayak": nayak(self.z, self.pixel)}
         return found
@@ -113,12 +125,11 @@ class Inspection:
         if not np.isfinite(away).any():
             return math.nan, math.nan
         length = float(np.nanmin(away))
-        range_ = 2 * math.pi * length, 4.0 * max(self.pixel)
-        slope, deviation = self.spectrum.slope(*range_)
+        slope, deviation = self.spectrum.slope(math.pi * length)  # clear of the roll-off
         if np.isnan(self.z).any():
             error = Spectrum.of(fill_error(self._filled, np.isnan(self.z), self.pixel), self.pixel).C
             rest = replace(self.spectrum, C=np.maximum(self.spectrum.C - error, np.finfo(float).tiny))
-            again = rest.slope(*range_)[0]
+            again = rest.slope(math.pi * length)[0]
             if not abs(again - slope) <= deviation:
                 return math.nan, math.nan
         return slope, deviation
@@ -126,6 +137,21 @@ class Inspection:
     def fit(self, kind: str, draws: int = 16) -> RoughnessFit:
         """Fit a ``"gaussian"`` or ``"self-affine"`` roughness to the levelled map."""
         return fit_roughness(self.z, self.pixel, kind, draws)
+
+    def curves(self) -> dict[str, Any]:
+        """Spectrum, autocorrelation along x and y, and bearing curve as numbers, SI."""
+        spectrum, correlation = self.spectrum, self.autocorrelation
+        lags, values = correlation.lags, correlation.values
+        i, j = (n // 2 for n in values.shape)
+        ratio, heights = material_ratio(self.z, 100)
+        along = {"lag_x": lags[0][i:], "x": values[i:, j], "lag_y": lags[1][j:], "y": values[i, j:]}
+        return {
+            "spectrum": {"q": spectrum.q, "C": spectrum.C, "units": ["rad/m", "m^4"],
+                         "normalisation": NORMALISATION},
+            "autocorrelation": along | {"units": ["m", "1"], "normalisation": "1 at lag 0"},
+            "bearing_curve": {"material_ratio": ratio, "height": heights, "units": ["1", "m"],
+                              "normalisation": "share of the points at least that high above the mean"},
+        }  # fmt: skip
 
     def document(self) -> dict[str, Any]:
         """All of this as plain numbers and texts, SI."""
@@ -147,12 +173,20 @@ class Inspection:
             "window": {"points": list(self.z.shape), "missing": int(np.isnan(self.z).sum())},
             "parameters": self.parameters,
             "deviations": self.deviations,
+            "curves": _listed(self.curves()),
             "notes": [
                 *self.surface.prepared.notes,
                 *standing_out(self.z, self.pixel),
                 *implausible_slope(self.z, self.pixel),
             ],
         }
+
+
+def _listed(values: Any) -> Any:
+    """Arrays as lists."""
+    if isinstance(values, dict):
+        return {key: _listed(value) for key, value in values.items()}
+    return values.tolist() if isinstance(values, np.ndarray) else values
 
 
 def inspect_surface(

@@ -22,7 +22,7 @@ from refimpl.measured.standing_out import standing_out
 from refimpl.measured.untrusted import read_untrusted, refuse_huge
 from refimpl.surfaces.bicubic import MEMORY, resample, resample_periodic
 from refimpl.surfaces.from_table import KINDS
-from refimpl.surfaces.surface import Surface, finite, pixel_edges
+from refimpl.surfaces.surface import Surface, finite, pixel_edges, positive
 
 _ALLOWED_FRACTION = "a fraction, 0 <= max_missing < 1"
 
@@ -31,8 +31,9 @@ _ALLOWED_FRACTION = "a fraction, 0 <= max_missing < 1"
 class MeasuredSurface(Surface):
     """Measured heights from a file (which: ``readers.read``), treated in this order:
 
-    1. outliers and wavelengths (``preparation.prepare``): points further than ``outliers`` spreads from the
-       median of their neighbours become missing; ``low_pass`` and ``high_pass`` (m) filter the whole map;
+    1. outliers, scan lines, wavelengths (``preparation.prepare``): points further than ``outliers`` spreads
+       from the median of their neighbours become missing; lines along ``scan_lines``, ``"x"`` or ``"y"`` of
+       the file, are levelled one by one; ``low_pass`` and ``high_pass`` (m) filter the whole map;
     2. orientation: heights point out of the material, x to the right and y up as seen from outside.
        ``replica=True`` negates them; ``mirror="x"`` or ``"y"`` mirrors (x -> -x, y -> -y); ``rotate_deg``
        (0, 90, 180, 270) turns them anticlockwise; ``turn_over`` turns the specimen over about the x axis,
@@ -49,6 +50,7 @@ class MeasuredSurface(Surface):
     6. bicubic resampling to the element centres: sampled, not averaged; within the outermost half pixel of
        the measured area the spline's end piece goes on.
 
+    Heights are multiplied by ``height_scale``, the instrument's z calibration: 1, and to be varied.
     ``unit`` (of heights: m, mm, um, nm, A, pm) and ``pixel_size`` (m; a number or (x, y)) are for files that
     do not state them, and override those that do; ``channel`` is a name or a number. Read on first use, then
     kept. Periodic scenes refuse it unless it ``repeats``, a whole number of times.
@@ -59,6 +61,7 @@ class MeasuredSurface(Surface):
     pixel_size: float | tuple[float, float] | None = field(default=None, kw_only=True)
     channel: str | int | None = field(default=None, kw_only=True)
     outliers: float | None = field(default=None, kw_only=True)
+    scan_lines: str | None = field(default=None, kw_only=True)
     low_pass: float | None = field(default=None, kw_only=True)
     high_pass: float | None = field(default=None, kw_only=True)
     level: str | int | None = field(default=None, kw_only=True)
@@ -70,6 +73,7 @@ class MeasuredSurface(Surface):
     turn_over: bool | None = field(default=None, kw_only=True)
     centre: tuple[float, float] | None = field(default=None, kw_only=True)
     repeats: bool = field(default=False, kw_only=True)
+    height_scale: float = field(default=1.0, kw_only=True)
     kind: ClassVar[str] = "measured"
 
     def __post_init__(self) -> None:
@@ -86,8 +90,9 @@ class MeasuredSurface(Surface):
                 raise InputError(name, getattr(self, name), "true or false")
         if self.level is None:
             object.__setattr__(self, "level", "mean" if self.repeats else "plane")
+        positive("height_scale", self.height_scale, "a positive factor on heights (z calibration)")
         check_level(self.level, self.repeats)
-        check_preparation(self.channel, self.outliers, self.low_pass, self.high_pass)
+        check_preparation(self.channel, self.outliers, self.scan_lines, self.low_pass, self.high_pass)
         check_orientation(self.mirror, self.rotate_deg, self.turn_over)
         object.__setattr__(self, "rotate_deg", int(self.rotate_deg))
         if self.centre is not None:
@@ -115,13 +120,14 @@ class MeasuredSurface(Surface):
     @cached_property
     def prepared(self) -> RawHeights:
         """The map without outliers and with its wavelengths filtered."""
-        return prepare(self.reading, self.outliers, self.low_pass, self.high_pass, self.repeats)
+        filters = self.low_pass, self.high_pass, self.repeats
+        return prepare(self.reading, self.outliers, *filters, self.scan_lines)
 
     @cached_property
     def _oriented(self) -> Oriented:
         """The file's heights as they lie on the body."""
         return oriented(
-            self.prepared,
+            replace(self.prepared, heights=self.height_scale * self.prepared.heights),
             replica=self.replica,
             mirror=self.mirror,
             rotate_deg=self.rotate_deg,
@@ -134,10 +140,20 @@ class MeasuredSurface(Surface):
 
     @cached_property
     def _turned(self) -> MeasuredSurface:
-        turned = replace(self, turn_over=True)
-        for name in ("reading", "prepared"):  # cached properties: the file is read and filtered once
-            vars(turned)[name] = getattr(self, name)
-        return turned
+        return self._with(turn_over=True)
+
+    def _with(self, **changes: Any) -> Self:
+        """The same file otherwise seen, read and filtered once."""
+        other = replace(self, **changes)
+        for name in ("reading", "prepared"):  # cached properties
+            vars(other)[name] = getattr(self, name)
+        return other
+
+    def parameters(self) -> dict[str, float]:
+        return {"height_scale": self.height_scale}
+
+    def with_parameter(self, name: str, value: float) -> Self:
+        return self._with(**{name: value})
 
     def extent(self, offset: tuple[float, float]) -> tuple[float, float]:
         reading = self._oriented.reading
@@ -251,6 +267,7 @@ class MeasuredSurface(Surface):
     def to_dict(self) -> dict[str, Any]:
         table = super().to_dict() | {"path": str(self._file.absolute())}
         unset = [name for name in ("replica", "rotate_deg", "repeats") if not table[name]]
+        unset += ["height_scale"] if self.height_scale == 1 else []
         table = {key: value for key, value in table.items() if key not in unset}
         pairs = {name: table[name] for name in ("pixel_size", "centre") if name in table}
         return table | {name: list(pair) for name, pair in pairs.items()}

@@ -1,15 +1,17 @@
-"""Preparation of a measured map as a whole, before a window is cut: outliers, Gaussian filters."""
+"""Preparation of a measured map as a whole, before a window is cut: outliers, scan lines, filters."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import scipy
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, require_one_of
 from refimpl.grid import Array
 from refimpl.measured.detrending import fit
+from refimpl.measured.instrument_files import library_for
 from refimpl.measured.missing_points import fill
 from refimpl.measured.reading import RawHeights
 from refimpl.surfaces.surface import positive
@@ -21,12 +23,16 @@ MAD_TO_RMS = 1.4826  # from the median of absolute Gaussian distances to their r
 REACH = 1.5  # cut-off wavelengths of padding: the weight there is exp(-1.5^2 pi^2 / ln 2) = 1e-14
 
 
-def check_preparation(channel: object, outliers: object, low_pass: object, high_pass: object) -> None:
+def check_preparation(
+    channel: object, outliers: object, scan_lines: object, low_pass: object, high_pass: object
+) -> None:
     """Raise InputError for keys of a measured surface that are out of range; None is not set."""
     if not isinstance(channel, str | int | None) or isinstance(channel, bool):
         raise InputError("channel", channel, "a channel's name or number")
     if outliers is not None:
         positive("outliers", outliers, "a number of spreads, say 6")
+    if scan_lines is not None:
+        require_one_of("scan_lines", scan_lines, ("x", "y"))
     wavelengths = {
         name: value for name, value in (("low_pass", low_pass), ("high_pass", high_pass)) if value is not None
     }
@@ -41,6 +47,7 @@ def prepare(
     low_pass: float | None = None,
     high_pass: float | None = None,
     repeats: bool = False,
+    scan_lines: str | None = None,
 ) -> RawHeights:
     """Return the map with outliers missing and wavelengths filtered, a note for each step.
 
@@ -48,12 +55,16 @@ def prepare(
                median, over the four lines through a point, of that from the mean of its two neighbours; a
                spread is the rms of such distances, from their median over the map, or from their 80th
                percentile over the 5 x 5 points around where that is larger (edges, rougher places)
+    scan_lines the axis, "x" or "y", along which an instrument scanned: each line loses its least-squares
+               slope and, but for the map's mean, its median
     low_pass   wavelengths (m) below are damped, ``high_pass``: above; by half at that wavelength (Gaussian
                filter of ISO 16610-61). At the border the weights are normalised (ISO 16610-28), after the
                plane of the whole map is set aside; missing points are filled for the filter alone.
     """
     if outliers is not None:
         reading = _without_outliers(reading, outliers, repeats)
+    if scan_lines is not None:
+        reading = _aligned(reading, scan_lines, repeats)
     if low_pass is not None or high_pass is not None:
         reading = _filtered(reading, low_pass, high_pass, repeats)
     return reading
@@ -89,6 +100,16 @@ def off_neighbours(z: Array, repeats: bool) -> Array:
         np.minimum(low, off, out=low)
         np.maximum(high, off, out=high)
     return np.abs(total - low - high) / 2.0
+
+
+def _aligned(reading: RawHeights, axis: str, repeats: bool) -> RawHeights:
+    if repeats:
+        raise InputError("scan_lines", axis, "none of a map that repeats, whose lines have no slope")
+    topography = library_for(Path(reading.name)).Topography
+    z = np.ma.masked_invalid(reading.heights)
+    found = topography(z, reading.area).scan_line_align(direction=axis).heights()
+    note = f"scan lines along {axis}: each lost its slope and its median, and what the map has across them"
+    return replace(reading, heights=np.ma.filled(found, np.nan), notes=(*reading.notes, note))
 
 
 def _filtered(

@@ -34,8 +34,8 @@ def standing_out(z: Array, pixel: tuple[float, float]) -> tuple[str, ...]:
     for axis, values in (("x", z.T), ("y", z)):
         if lines := scars(values):
             notes.append(
-                f"{lines} of {len(values)} lines along {axis} stand out as a whole (scars of a scan): level "
-                "the map line by line, or measure again; contact would run along them"
+                f"{lines} of {len(values)} lines along {axis} stand out as a whole (scars of a scan): "
+                f'scan_lines = "{axis}" (--scan-lines {axis}) levels each; contact would run along them'
             )
     return tuple(notes)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -58,6 +59,9 @@ def without_labels(
         return rows[:, 1:], [*notes, "a leading index column was dropped"]
     if rows.shape[1] <= POINT:
         return rows, notes
+    if _are_places(rows[:, :2]):
+        found = f"{rows.shape[1]} columns, of which the first two are places on a grid"
+        raise InputError("path", str(path), f"points in three columns, x, y, z ({found})")
     x, y = rows[0, 1:], rows[1:, 0]
     even = [_is_even(x) and not _goes_on(x, rows[1, 1:]), _is_even(y) and not _goes_on(y, rows[1:, 1])]
     if all(even) and not titled:
@@ -70,6 +74,13 @@ def without_labels(
         found = f"the first row begins with {sample[0][:4]}, the first column with {rows[:4, 0].tolist()}"
         raise InputError("path", str(path), f"heights without their coordinates ({found})")
     return rows, notes
+
+
+def _are_places(pairs: Array) -> bool:
+    """Return whether pairs are the places of a grid, each once, of which a few may be absent."""
+    counts = [len(np.unique(along)) for along in pairs.T]
+    few = min(counts) > 1 and max(counts) <= len(pairs) // 2 and math.prod(counts) <= 2 * len(pairs)
+    return few and len(np.unique(pairs, axis=0)) == len(pairs)
 
 
 def _is_even(values: Array, share: float = 0.1) -> bool:

@@ -20,12 +20,13 @@ import numpy as np
 from refimpl.errors import InputError
 from refimpl.grid import Array
 from refimpl.measured.decimal_marks import refuse_ambiguous
+from refimpl.measured.point_tables import POINT
 from refimpl.measured.table_labels import is_title, without_labels, word_in_corner
 from refimpl.measured.text_lines import NOT_MEASURED, encoding_of, lines_of
 
 MAX_HEADER = 400  # lines before the numbers
 _SAMPLE = 50  # lines by whose entries labels of rows and columns are known
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?")
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?", re.ASCII)
 _NO_DATA = re.compile(rf"(nodata_value)\s+({_NUMBER.pattern})", re.IGNORECASE)
 _COMMA_NUMBER = re.compile(r"[-+]?(\d+,\d*|,\d+)([eEdD][-+]?\d+)?")
 
@@ -69,9 +70,11 @@ def read_table(path: Path) -> TextTable:
     sample = [layout.cells(line) for line in shown]
     titled, corner = is_title(sample), word_in_corner(sample, layout.unknown(sample[0]))
     comments: list[tuple[int, str]] = []
+    blanks = set[int]()
 
     def data() -> Iterator[tuple[int, str]]:
         comments.clear()
+        blanks.clear()
         count = 0
         for number, line in islice(lines_of(path, encoding), start + titled, None):
             if line.startswith("#") and not layout.is_row(line, width):
@@ -82,6 +85,8 @@ def read_table(path: Path) -> TextTable:
                     raise InputError("path", str(path), allowed)
                 count += 1
                 yield number, line.replace(corner, "nan", 1) if corner and count == 1 else line
+            else:
+                blanks.add(count)
 
     refuse_ambiguous(path, lambda: (line for _, line in data()), layout.separator, shown)
     notes: list[str] = []
@@ -91,6 +96,7 @@ def read_table(path: Path) -> TextTable:
     elif layout.ends(lines[start]):
         notes = [_EMPTY.format("last")]
     rows[np.isinf(rows)] = np.nan
+    _refuse_blocks(path, rows, blanks)
     header = tuple(line for line in lines[:start] if line.strip(",; \t"))
     if stated := _NO_DATA.search("\n".join(header)):
         absent = rows == float(stated[2])
@@ -149,6 +155,8 @@ class _Layout:
 
     def value(self, cell: str) -> float:
         """NaN of what is missing. Raises ValueError."""
+        if not cell.isascii():
+            raise ValueError(cell)
         try:
             return float(cell)
         except ValueError:
@@ -191,6 +199,17 @@ def _refuse_blank(path: Path, above: list[list[str]], start: int, width: int) ->
     if padded and any(not any(cells) for cells in above[start:]):
         found = f"line {start + 1} has none: write nan in a row of missing points, delete a blank line"
         raise InputError("path", str(path), f"entries between separators ({found})")
+
+
+def _refuse_blocks(path: Path, rows: Array, blanks: set[int]) -> None:
+    """Raise InputError for tables with a blank line between, and for two separators between entries."""
+    inner = [row for row in blanks if 0 < row < len(rows)]
+    if rows.shape[1] <= POINT:
+        return
+    if 0 < len(inner) < len(rows) - 1:
+        raise InputError("path", str(path), f"one table (a blank line stands below its row {min(inner)})")
+    if np.isnan(rows[:, 1::2]).all() and not np.isnan(rows[:, ::2]).all(axis=0).any():
+        raise InputError("path", str(path), "one separator between entries (every second column is empty)")
 
 
 def _plain_numbers(layout: _Layout, lines: Iterator[str]) -> Array | None:

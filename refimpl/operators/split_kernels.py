@@ -11,9 +11,9 @@ import numpy as np
 import scipy
 
 from refimpl.grid import Array, Shape, read_only
+from refimpl.operators.coarse_grid import COARSER
 from refimpl.operators.kernel_tables import unit_table
 
-COARSER = 4  # elements per spacing of the coarse grid
 SHAPE = 22.0  # beta of the bell
 RADIUS = 2 * COARSER * SHAPE / np.pi  # R: the band ends at half the coarse grid's highest frequency
 REACH = int(RADIUS)  # greatest offset at which the near part counts
@@ -21,7 +21,7 @@ WIDTH = 12  # spacings under the window
 _WINDOW_SHAPE = 0.98 * np.pi * WIDTH * (1 - 0.5 * 0.5)  # beta of the window, for half the frequencies
 _TAPS = 24  # spacings that the filter reaches: 16 leave 6e-10 of its values, 24 leave 3e-12
 _GAUSS = 4  # points along an element's edge: exact to 3e-13 for the band's shortest wave
-_SIGNS = {"normal": (1, 1), "tangential": (-1, 1)}  # of opposite offsets, along x and y
+_SIGNS = {"normal": (1, 1), "tangential": (-1, 1)}  # signs of opposite offsets, along x and y
 
 
 def window(distance: Array) -> Array:

@@ -128,7 +128,7 @@ class Ducc:
         """See `Library`."""
         if values.shape != shape:
             n, m = values.shape
-            padded = np.zeros(shape)
+            padded = np.zeros(shape, dtype=values.dtype)
             padded[:n, :m] = values
             values = padded
         found: Complex = self._fft.r2c(values, axes=(1, 0), nthreads=workers)

@@ -100,6 +100,11 @@ SURFACES: dict[str, Texts] = {
             "two neighbours; a spread is the rms of such distances, from their median over the map, or from "
             "their 80th percentile over the 5 x 5 points around where that is larger",
         ),
+        "scan_lines": (
+            "",
+            'axis of the file along which it was scanned, `"x"` or `"y"`: each line loses its slope and its '
+            "median (SurfaceTopography's scan_line_align), and so what the surface has across the lines",
+        ),
         "low_pass": ("m", "shorter waves are damped (S-filter), by half at this wavelength"),
         "high_pass": ("m", "longer waves are damped (L-filter), by half at this wavelength"),
         "level": (
@@ -122,5 +127,10 @@ SURFACES: dict[str, Texts] = {
             "area's middle",
         ),
         "repeats": ("", "the map repeats with its own area (for periodic scenes)"),
+        "height_scale": (
+            "",
+            "factor on all heights; its relative half-width in `[tolerances]` is the uncertainty of the "
+            "instrument's z calibration",
+        ),
     },
 }

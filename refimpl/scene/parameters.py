@@ -14,7 +14,7 @@ _TOLERANCE = "a relative tolerance between 0 and 1 (half-width, 95 %)"
 
 
 def parameters(scene: Scene) -> dict[str, float]:
-    """All parameters with their values, SI; a surface's parts count from 0.
+    """Return all parameters with their values, SI; a surface's parts count from 0.
 
     ``load``, ``friction.tau``, ``friction.beta``, ``upper.material.E``, ``upper.material.nu``,
     ``upper.material.hardness`` where one is given, ``upper.surface[0].rms`` and so on; of two correlation
@@ -39,7 +39,7 @@ def parameters(scene: Scene) -> dict[str, float]:
 
 
 def with_parameter(scene: Scene, name: str, value: float) -> Scene:
-    """The scene with one parameter changed.
+    """Return the scene with one parameter changed.
 
     Raises `InputError` for a name that is none of `parameters(scene)`, and for a value out of range.
     """

@@ -239,7 +239,7 @@ class Scene:
         return tuple(dict.fromkeys(map(printable, lines)))
 
     def parts(self, name: str) -> tuple[Surface, ...]:
-        """The surfaces of the "lower" or the "upper" body, as they lie on it."""
+        """Return the surfaces of the "lower" or the "upper" body, as they lie on it."""
         given: tuple[Surface, ...] = getattr(self, name).surface.parts
         return tuple(part.on_upper_body() for part in given) if name == "upper" else given
 
@@ -261,7 +261,7 @@ class Scene:
         return self.sliding_offset * math.cos(angle), self.sliding_offset * math.sin(angle)
 
     def sampled(self, grid: Grid) -> tuple[Array, Array]:
-        """The `heights`, without a warning."""
+        """Return the `heights`, without a warning."""
         lower, upper = self._summed("lower", grid, self._offset), self._summed("upper", grid, (0.0, 0.0))
         return _centred("lower", lower, grid), _centred("upper", upper, grid)
 
@@ -300,8 +300,9 @@ def _centred(name: str, heights: Array, grid: Grid) -> Array:
         raise InputError(
             f"{name}.surface",
             f"peak-to-valley {high - low:.3g} m",
-            f"heights in m whose peak-to-valley is at most the longer side, {side:.3g} m (wrong unit? "
-            "Without slope terms, heights and approach times s with moduli over s have the same pressures)",
+            f"heights in m whose peak-to-valley is at most the longer side, {side:.3g} m (unit of heights, "
+            "or of pixel and side? Without slope terms, heights and approach times s with moduli over s have "
+            "the same pressures)",
         )
     heights -= low + 0.5 * (high - low)
     return heights

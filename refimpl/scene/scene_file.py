@@ -33,7 +33,7 @@ _RIGID = "rigid"  # E of a rigid body
 
 
 def read_scene(path: str | Path) -> Scene:
-    """The scene of a TOML file, or a shipped scene by its name (see `shipped_scenes`).
+    """Return the scene of a TOML file, or a shipped scene by its name (see `shipped_scenes`).
 
     Paths of measured surfaces are relative to the file. Raises `InputError` naming the field.
     """
@@ -42,7 +42,8 @@ def read_scene(path: str | Path) -> Scene:
 
 
 def read_tolerances(path: str | Path) -> dict[str, float]:
-    """The ``[tolerances]`` of a scene's file: relative half-widths (95 %) by parameter, none by default.
+    """Return the ``[tolerances]`` of a scene's file: relative half-widths (95 %) by parameter, none by
+    default.
 
     >>> read_tolerances("table1-smooth")
     {}
@@ -65,7 +66,9 @@ def _read(name: str | Path) -> tuple[dict[str, Any], Path]:
 
 
 def read_toml(path: Path, field: str) -> dict[str, Any]:
-    """The parsed file; raises `InputError`, naming the ``field``, for one that is too large or no TOML."""
+    """Return the parsed file; raises `InputError`, naming the ``field``, for one that is too large or no
+    TOML.
+    """
     try:
         if path.stat().st_size > _MAX_BYTES:
             raise InputError(field, str(path), f"a TOML file of at most {_MAX_BYTES} bytes")
@@ -82,7 +85,7 @@ def read_toml(path: Path, field: str) -> dict[str, Any]:
 
 
 def shipped_scenes() -> tuple[str, ...]:
-    """Names of the scenes that ship as package data.
+    """Return the names of the scenes that ship as package data.
 
     >>> "table1-smooth" in shipped_scenes()
     True
@@ -93,7 +96,7 @@ def shipped_scenes() -> tuple[str, ...]:
 
 
 def scene_from_dict(table: Mapping[str, Any], folder: Path) -> Scene:
-    """The scene of a parsed TOML table; unknown and missing keys raise `InputError`."""
+    """Return the scene of a parsed TOML table; unknown and missing keys raise `InputError`."""
     _refuse_unknown("scene", table, SCENE)
     friction = _table(table, "friction", {})
     _refuse_unknown("friction", friction, FRICTION)
@@ -110,7 +113,9 @@ def scene_from_dict(table: Mapping[str, Any], folder: Path) -> Scene:
 
 
 def scene_to_dict(scene: Scene) -> dict[str, Any]:
-    """The scene as a plain table; raises `InputError` for arrays, and for surfaces and laws of one's own."""
+    """Return the scene as a plain table; raises `InputError` for arrays, and for surfaces and laws of one's
+    own.
+    """
     if not isinstance(scene, Scene):
         raise InputError("scene", scene, "a Scene")
     if type(scene.friction) is not Friction:
@@ -121,7 +126,7 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
 
 
 def scene_to_toml(scene: Scene) -> str:
-    """The scene as TOML text that `read_scene` reads back."""
+    """Return the scene as TOML text that `read_scene` reads back."""
     return tomli_w.dumps(scene_to_dict(scene))
 
 

@@ -81,7 +81,7 @@ def budget(
     tolerances: Mapping[str, float] | None = None,
     sampling: Mapping[str, float] | None = None,
 ) -> Budgets:
-    """Budgets of mu and A (the corrected ones), f_max and Q.
+    """Return the budgets of mu and A (the corrected ones), f_max and Q.
 
     Parameters
     ----------

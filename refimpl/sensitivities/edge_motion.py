@@ -33,7 +33,7 @@ class EdgeMotion:
         self.counted = counted / abs(derivative) if derivative else 0.0
 
     def derivative(self, pressure: Array) -> tuple[float, float]:
-        """``dA/dp`` (m^2 a unit) and its scatter for a derivative of the pressures."""
+        """Return ``dA/dp`` (m^2 a unit) and its scatter for a derivative of the pressures."""
         near, far = (
             factor * self._growth(pressure, size) for factor, size in zip(self.factors, _WIDTHS, strict=True)
         )

@@ -22,7 +22,7 @@ _SOLVED = 1e-3  # relative residual of a linear solve, at most: the digits of a 
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """Derivatives at the fixed set: pressures (window's shape), their peak, F and Q over the parameter.
+    """Derivatives at the fixed set: pressures (window's shape), their peak, F, Q and the approach.
 
     Of peaks that tie the middle one counts, as for a central difference; ``torn`` is how far others are off.
     """
@@ -32,13 +32,16 @@ class Answer:
     torn: float
     friction: float
     binormal: float
+    approach: float
     residual: float
 
 
 def fixed_answer(
     scene: Scene, base: Problem, fixed: FixedContact, name: str, value: float, excess: float
 ) -> Answer:
-    """Answer to a parameter; its friction is without tau on the mean ``excess`` of the edge (m^2)."""
+    """Return the answer to a parameter; its friction is without tau on the mean ``excess`` of the edge
+    (m^2).
+    """
     (low, below), (high, above) = both_sides(
         name,
         value,
@@ -69,6 +72,7 @@ def fixed_answer(
         friction=(after.friction - before.friction - (above.friction.jump - below.friction.jump) * excess)
         / span,
         binormal=(after.binormal - before.binormal) / span,
+        approach=found.approach,
         residual=found.residual,
     )
 

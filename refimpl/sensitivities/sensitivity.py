@@ -53,7 +53,8 @@ class Sensitivity:
     ``derivatives[number][parameter]``, and ``scatter`` of the same shape: a 95 % half-width, infinite where
     half the grid has no such derivative. ``found`` and ``parameters`` are the numbers and parameters
     themselves. ``residual`` is the worst of the linear solves. ``edge_growth`` is the part of mu's
-    derivatives by tau on the area that the contact gains.
+    derivatives by tau on the area that the contact gains. ``contact_stiffness`` is ``dN / d(approach)``
+    (N/m), at the contact set, which it does not change to first order.
     """
 
     found: Mapping[str, float]
@@ -62,9 +63,10 @@ class Sensitivity:
     scatter: Mapping[str, Mapping[str, float]]
     residual: float
     edge_growth: Mapping[str, float] = field(default_factory=dict)
+    contact_stiffness: float = math.nan
 
     def relative(self, number: str, parameter: str) -> float:
-        """``(p / q) dq/dp``: the per cents that q changes by for one per cent of p.
+        """Return ``(p / q) dq/dp``: the per cents that q changes by for one per cent of p.
 
         Raises `InputError` for a number that is zero, and for a name that is none.
         """
@@ -77,7 +79,7 @@ class Sensitivity:
 
 
 def sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = None) -> Sensitivity:
-    """Derivatives of mu, A, f_max and Q by every parameter of `differentiable_parameters(scene)`.
+    """Return the derivatives of mu, A, f_max and Q by every parameter of `differentiable_parameters(scene)`.
 
     ``solution`` is the scene's own, under its load. Costs one GMRES solve a parameter, two solves on the
     solution's grid for the load and for each number of a surface, and as much on half the elements a side.
@@ -204,6 +206,7 @@ def _gathered(
         scatter=scatter,
         residual=max(answer.residual for answer in answers.values()),
         edge_growth={name: dmu_dA * area for name, (area, _) in areas.items()},
+        contact_stiffness=1 / answers["load"].approach,
     )
 
 

@@ -75,6 +75,12 @@ def _mean(pressure: Array) -> float:
     return float(touching.mean()) if touching.size else 0.0
 
 
+def _elastic_friction(details: Details) -> float:
+    """The part of Eq. (3) that is not local friction: ``sum f sin(theta_x) cos(theta_y) dA``."""
+    slopes = details.state.slopes
+    return float((details.state.pressure * slopes.sin_x * slopes.cos_y).sum()) * details.grid.element_area
+
+
 @dataclass
 class Quantity:
     """A number of a `Solution`, which reads it as an attribute of its name.
@@ -154,6 +160,9 @@ class Numbers:
     )  # fmt: skip
     friction_force = Quantity("F, summed over elements", "F", "N", tables=())
     binormal_force = Quantity("transverse force Q", "Q", "N")
+    elastic_friction = Quantity(
+        "F by slopes", "F_s", "N", tables=(), rule=None, source=lambda s: _elastic_friction(s.details)
+    )  # fmt: skip
 
     @cached_property
     def uncertainty(self) -> Mapping[str, Mapping[str, float | None]]:

@@ -32,6 +32,8 @@ class Solution(Record):
     friction_coefficient, friction_force : mu and F summed over elements, Eqs (4) and (3) of the discrete
         state: the numbers to compare between codes
     normal_force, binormal_force : N and the transverse (binormal) force Q
+    elastic_friction : the part of F by slopes, ``sum f sin(theta_x) cos(theta_y) dA``: a single specimen's
+        mean slope is in it, with the opposite sign once it slides the opposite way
     approach : from first contact, or from the mean planes when periodic
     contact_area, contact_area_corrected, contact_area_share : real contact area, less the excess along its
         edge, and over that of the domain

@@ -57,7 +57,7 @@ class ActiveSet(Protocol):
 
     @property
     def is_fixed(self) -> bool:
-        """Whether shares of tau do not depend on the state."""
+        """Return whether shares of tau do not depend on the state."""
 
     def traction(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
         """Return r (Pa)."""
@@ -129,15 +129,15 @@ class TauSolver(Protocol):
 
     @property
     def stagnated(self) -> bool:
-        """Whether the last solve did not converge."""
+        """Return whether the last solve did not converge."""
 
     @property
     def exhausted(self) -> bool:
-        """Whether no further solve is worthwhile: slopes diverged, or the solver's budget is spent."""
+        """Return whether no further solve is worthwhile: slopes diverged, or the solver's budget is spent."""
 
     @property
     def window_too_small(self) -> bool:
-        """Whether the contact meets the edge of the solver's window."""
+        """Return whether the contact meets the edge of the solver's window."""
 
     @property
     def contact(self) -> Mask:

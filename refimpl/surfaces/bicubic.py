@@ -12,7 +12,7 @@ MEMORY = 32
 
 
 def resample(data: Array, x: Array, y: Array) -> Array:
-    """Values at all pairs of ``x``, ``y``, shape ``(len(x), len(y))``.
+    """Return the values at all pairs of ``x``, ``y``, shape ``(len(x), len(y))``.
 
     ``data[i, j]`` sits at ``(i, j)`` (pixel units), at least four points an axis; beyond the outermost points
     the spline's end piece goes on. Only the points the spline can remember are used.
@@ -23,7 +23,7 @@ def resample(data: Array, x: Array, y: Array) -> Array:
 
 
 def resample_periodic(data: Array, x: Array, y: Array) -> Array:
-    """As ``resample`` for data that repeat with the periods ``data.shape``."""
+    """Return ``resample`` for data that repeat with the periods ``data.shape``."""
     nx, ny = data.shape
     wrapped = np.pad(data, MEMORY, mode="wrap")
     return resample(wrapped, np.mod(x, nx) + MEMORY, np.mod(y, ny) + MEMORY)

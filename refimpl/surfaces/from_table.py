@@ -17,7 +17,7 @@ KINDS: dict[str, type[Surface]] = {c.kind: c for c in (Flat, Sphere, GaussianRou
 
 
 def surface_from_dict(table: dict[str, Any], folder: Path = Path(), place: str = "surface") -> Surface:
-    """The surface of one table ``{"kind": ..., ...}``; paths in it are relative to ``folder``.
+    """Return the surface of one table ``{"kind": ..., ...}``; paths in it are relative to ``folder``.
 
     Raises InputError naming the key that is unknown, missing or out of range, after the table's ``place``.
 

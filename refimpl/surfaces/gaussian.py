@@ -87,7 +87,7 @@ class GaussianRoughness(Surface):
 
     @np.errstate(under="ignore")  # far lags end as zeros
     def autocorrelation(self, x: Array, y: Array | float = 0.0) -> Array:
-        """Eq. (9) at lags (x, y) (m): ``rms^2 exp(-2.3 (x'^2 / lx^2 + y'^2 / ly^2))`` (m^2)."""
+        """Return Eq. (9) at lags (x, y) (m): ``rms^2 exp(-2.3 (x'^2 / lx^2 + y'^2 / ly^2))`` (m^2)."""
         a, s, b = self.ellipse.sheared
         return np.asarray(self.rms**2 * np.exp(-DECAY * (((x + s * y) / a) ** 2 + (y / b) ** 2)))
 
@@ -131,7 +131,7 @@ class GaussianRoughness(Surface):
         return self.rms * self._lattice.field(self.seed, x, y, grid.lengths if grid.periodic else None)
 
     def smoothing(self, x: Array, period: float | None = None) -> tuple[range, scipy.sparse.csr_array]:
-        """The lattice's nodes and matrix along x (`NoiseLattice.smoothing`)."""
+        """Return the lattice's nodes and matrix along x (`NoiseLattice.smoothing`)."""
         return self._lattice.smoothing(x, 0, period)
 
     @cached_property
@@ -193,8 +193,8 @@ class GaussianRoughness(Surface):
         return math.sqrt(second - (first - shift) ** 2)
 
     def detail(self, spacing: float) -> Detail:
-        # mean squares of the Laplacian and the gradient of Eq. (9): 32 c^2 and 4 c, c = 2.3 / l^2;
-        # of the spectrum exp(-q^2 / (4 c)) the gradient's square beyond q is (1 + s) exp(-s), s = q^2 / (4 c)
+        # mean squares of the Laplacian and the gradient of Eq. (9): 32 c^2 and 4 c, c = 2.3 / l^2.
+        # With exp(-q^2 / (4 c)) the gradient's square beyond q is (1 + s) exp(-s), s = q^2 / (4 c)
         length = min(self.ellipse.along, self.ellipse.across)
         beyond = (math.pi / spacing * length) ** 2 / (4.0 * DECAY)
         unresolved = (1.0 + beyond) * math.exp(-beyond)

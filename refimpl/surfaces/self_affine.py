@@ -140,7 +140,7 @@ class SelfAffineRoughness(Surface):
         return 1.5 * self.moment(0) * self.moment(4) / self.moment(2) ** 2
 
     def psd(self, q: Array) -> Array:
-        """PSD C (m^4) at wave numbers across the lay (rad/m)."""
+        """Return the PSD C (m^4) at wave numbers across the lay (rad/m)."""
         plateau = self.rms**2 * self.anisotropy / self.moment(0)
         return np.asarray(plateau * self._shape(np.asarray(q, dtype=float)))
 

@@ -12,17 +12,17 @@ from refimpl.grid import Array
 
 
 def rms_height(z: Array) -> float:
-    """Root of the mean square deviation from the mean height (m)."""
+    """Return the root of the mean square deviation from the mean height (m)."""
     return float(np.std(z))
 
 
 def skewness(z: Array) -> float:
-    """Third central moment over ``rms^3``; 0 for Gaussian heights."""
+    """Return the third central moment over ``rms^3``; 0 for Gaussian heights."""
     return _moment(z, 3)
 
 
 def kurtosis(z: Array) -> float:
-    """Fourth central moment over ``rms^4``; 3 for Gaussian heights.
+    """Return the fourth central moment over ``rms^4``; 3 for Gaussian heights.
 
     >>> kurtosis(np.array([[-1.0, 1.0], [1.0, -1.0]]))
     1.0
@@ -37,7 +37,7 @@ def slopes(z: Array, spacing: float | tuple[float, float]) -> tuple[Array, Array
 
 
 def rms_slopes(z: Array, spacing: float | tuple[float, float]) -> tuple[float, float]:
-    """Root mean squares of ``dz/dx`` and ``dz/dy`` (about 0: a tilt counts).
+    """Return the root mean squares of ``dz/dx`` and ``dz/dy`` (about 0: a tilt counts).
 
     On Eq. (9) and spacing h the central difference sees ``(R(0) - R(2h)) / (2 h^2)`` in place of ``-R''(0)``:
     too little by the fraction ``4.6 (h / l)^2`` of the mean square, to leading order.
@@ -47,7 +47,8 @@ def rms_slopes(z: Array, spacing: float | tuple[float, float]) -> tuple[float, f
 
 
 def autocorrelation(z: Array, axis: int) -> Array:
-    """Mean product of deviations at lags 0, 1, ... along one axis, over the variance; ``(z.shape[axis],)``.
+    """Return the mean product of deviations at lags 0, 1, ... along one axis, over the variance;
+    ``(z.shape[axis],)``.
 
     Each lag averages the pairs that exist (nothing wraps). Heights of no variance give NaN.
     """
@@ -60,7 +61,8 @@ def autocorrelation(z: Array, axis: int) -> Array:
 
 
 def correlation_length(z: Array, spacing: float, level: float = 0.1) -> float | None:
-    """Lag (m) where the autocorrelation, averaged over both axes, first falls to ``level``; None if never.
+    """Return the lag (m) where the autocorrelation, averaged over both axes, first falls to ``level``; None
+    if never.
 
     ``z`` is square; linear between the points.
     """

@@ -42,7 +42,8 @@ class Detail:
     missed: str = ""
 
     def required(self, accuracy: float) -> float:
-        """Elements per length at which central differences see the rms slope too small by ``accuracy``.
+        """Return the elements per length at which central differences see the rms slope too small by
+        ``accuracy``.
 
         A wave q at the angle t to the axis has ``sin(q h cos t) / h`` in place of ``q cos t``: of the mean
         square slope ``(h curvature / length)^2 / 4`` is missing, of the rms slope half of that.
@@ -106,7 +107,7 @@ class Surface(ABC):
         return self.notes(grid)
 
     def notes(self, grid: Grid) -> tuple[str, ...]:
-        """The part of ``describe`` that a user should be warned of."""
+        """Return the part of ``describe`` that a user should be warned of."""
         return ()
 
     def pitch(self, lengths: tuple[float, float]) -> float | None:
@@ -167,13 +168,13 @@ class Surface(ABC):
         return SurfaceSum((*as_surface(other).parts, *self.parts))
 
     def to_dict(self) -> dict[str, Any]:
-        """A plain table for TOML: ``kind`` and every parameter that is set."""
+        """Return a plain table for TOML: ``kind`` and every parameter that is set."""
         values = {f.name: getattr(self, f.name) for f in fields(self)}  # type: ignore[arg-type]  # dataclasses all
         return {"kind": self.kind, **{name: v for name, v in values.items() if v is not None}}
 
     @classmethod
     def from_table(cls, table: dict[str, Any], folder: Path) -> Self:
-        """The surface of ``table`` (without its ``kind``); relative paths start at ``folder``."""
+        """Return the surface of ``table`` (without its ``kind``); relative paths start at ``folder``."""
         return cls(**table)
 
 
@@ -269,20 +270,22 @@ def as_surface(value: Surface | NDArray[Any]) -> Surface:
 
 
 def require_seed(seed: Any) -> int:
-    """The seed of a random roughness as a whole number; else InputError."""
+    """Return the seed of a random roughness as a whole number; else InputError."""
     if not is_whole(seed) or not 0 <= seed < 2**63:
         raise InputError("seed", seed, "a whole number, 0 <= seed < 2^63")
     return int(seed)
 
 
 def finite(field: str, value: Any, allowed: str) -> float:
-    """``value`` as a float if it is a finite real number (no text, no truth value); else InputError."""
+    """Return ``value`` as a float if it is a finite real number (no text, no truth value); else
+    InputError.
+    """
     require_number(field, value, allowed)
     return float(value)
 
 
 def positive(field: str, value: Any, allowed: str) -> float:
-    """``value`` as a float if it is a positive size that arithmetic can bear; else InputError."""
+    """Return ``value`` as a float if it is a positive size that arithmetic can bear; else InputError."""
     require_size(field, value, allowed)
     return float(value)
 

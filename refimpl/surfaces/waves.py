@@ -134,7 +134,7 @@ class PeriodicLattice:
 
 
 def rotated(qx: Array, qy: Array, lay: float) -> tuple[Array, Array]:
-    """Components of wave vectors along a lay and across it."""
+    """Return the components of wave vectors along a lay and across it."""
     cosine, sine = math.cos(lay), math.sin(lay)
     return qx * cosine + qy * sine, qy * cosine - qx * sine
 

@@ -82,11 +82,13 @@ def _median(row: Mapping[str, Any] | None) -> float | None:
 def accuracy_costs(costs: Mapping[str, Any]) -> str:
     """The coarsest grid for each accuracy, by class of scene."""
     labels = {"friction_coefficient": "μ", "contact_area": "A", "max_pressure": "p_max"}
+    labels |= {"friction_coefficient_corrected": "μ, corrected", "contact_area_corrected": "A, corrected"}
     demands = sorted({entry["error"] for one in costs["classes"] for entry in one["prices"]}, reverse=True)
     rows: list[Row] = []
     for one in costs["classes"]:
         offers = {(entry["quantity"], entry["error"]): entry for entry in one["prices"]}
-        for quantity, label in labels.items():
+        for quantity in dict.fromkeys(quantity for quantity, _ in offers):
+            label = labels[quantity]
             cells = (_grid_and_seconds(offers[quantity, demand]) for demand in demands)
             rows.append((one["class"], label, *cells, link("accuracy_costs")))
     head = ("class of scenes", "number", *(f"{100 * demand:g} %" for demand in demands), "file")

@@ -22,7 +22,8 @@ def checks(documents: Mapping[str, Any], evidence: Evidence) -> str:
                 ", ".join(f"`{pattern}`" for pattern in run["only"]) or f"all of the {run['tier']} tier"
             )
             counts = _counts(run["cases"])
-            rows.append((link(name), selected, *counts, made["date"][:10], f"`{made['commit'][:12]}`"))
+            commit = (made["commit"] or "n/a")[:12]
+            rows.append((link(name), selected, *counts, made["date"][:10], f"`{commit}`"))
     counted = zip(_counts(evidence.cases), COUNTED, strict=True)
     listed = ", ".join(f"{count} {status}" for count, status in counted)
     bad = [f"`{case['id']}` ({case['status']})" for case in evidence.cases if case["status"] != "pass"]

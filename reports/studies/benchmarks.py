@@ -111,6 +111,7 @@ def _seconds(kind: str, newest: Mapping[tuple[str, int], Sequence[Row]]) -> tupl
         {code: NAMES.get(code, code) for code in codes},
         xlabel="elements per side",
         ylabel="seconds",
+        height=4.6,
         log="xy",
         marker=True,
     )

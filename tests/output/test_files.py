@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import stat
-import subprocess
 import sys
 from pathlib import Path
 
@@ -31,18 +30,6 @@ def test_a_file_is_whole_or_as_it_was(tmp_path: Path) -> None:
         assert first.read_text() == "first"
     assert path.read_text() == "first"
     assert [p.name for p in tmp_path.iterdir()] == ["results.json"]
-
-
-def test_the_next_write_removes_what_a_killed_writer_left(tmp_path: Path) -> None:
-    target = tmp_path / "s.json"
-    target.write_text("old")
-    half = "with files.replacing(Path('s.json')) as temporary: temporary.write_text('half'); os._exit(9)"
-    code = f"import os; from pathlib import Path; from verification.output import files\n{half}"
-    assert subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=False).returncode == 9
-    assert target.read_text() == "old"
-    assert len(list(tmp_path.iterdir())) == 2
-    files.write_text("new", target)
-    assert [path.name for path in tmp_path.iterdir()] == ["s.json"]
 
 
 def test_a_link_keeps_leading_to_the_file_that_is_written(tmp_path: Path) -> None:

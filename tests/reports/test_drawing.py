@@ -11,25 +11,14 @@ import pytest
 from matplotlib.figure import Figure as Canvas
 
 from reports.catalogue import DECLARED
-from reports.drawing import INK, Draw, Figure, complete, curves, dots, maps, order, svg
+from reports.drawing import INK, Draw, Figure, complete, curves, maps, svg
 from reports.exhibit import as_csv
-from reports.reproduction_figures import LOADS
-from reports.yield_figures import BEYOND_YIELD, MODELS
 
 
 def drawn(draw: Draw, data: dict[str, Any]) -> Canvas:
     canvas = Canvas()
     draw(canvas, data)
     return canvas
-
-
-def test_an_order_figure_states_the_fitted_order() -> None:
-    draw = order({"e": "peak"}, expected=(2.0,))
-    axes = drawn(draw, {"M": [32, 64, 128], "e": [3 * M**-1.5 for M in (32, 64, 128)]}).axes[0]
-    legend = axes.get_legend()
-    assert legend is not None
-    assert [t.get_text() for t in legend.get_texts()] == ["peak, order 1.50", "order 2"]
-    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
 
 
 def test_lines_hold_the_series() -> None:
@@ -55,12 +44,6 @@ def test_few_points_of_a_logarithmic_axis_are_its_ticks(x: list[float], labels: 
     axes = drawn(draw, {"x": x, "y": x}).axes[0]
     shown = [tick.get_text() for tick in axes.get_xticklabels()]
     assert (shown == labels) is (labels is not None)
-
-
-def test_dots_say_zero_and_missing_in_words() -> None:
-    axes = drawn(dots("e", xlabel="error", limit=1e-9), {"e": {"a": 1e-12, "b": 0.0, "c": None}}).axes[0]
-    assert [t.get_text() for t in axes.texts] == ["1.0e-12", " exactly 0", " not available"]
-    assert [t.get_text() for t in axes.get_yticklabels()] == ["a", "b", "c"]
 
 
 def test_maps_have_x_to_the_right_and_blank_zeros() -> None:
@@ -108,7 +91,8 @@ def test_derived_series_are_in_the_csv() -> None:
 
 
 def test_labels_have_symbols_and_names_are_left_alone() -> None:
-    made = svg(Figure("*", ("v",), dots("v", xlabel="mu over 3 um"), ""), {"v": {"tau": 1.0, "tau-bar": 2.0}})
+    figure = curves("*", "", "v", {"v": "tau", "w": "tau-bar"}, xlabel="mu over 3 um", ylabel="")
+    made = svg(figure, {"v": [1.0, 2.0], "w": [1.0, 2.0]})
     assert made is not None
     texts = re.findall(r"<text[^>]*>([^<]*)</text>", made)
     assert {"μ over 3 µm", "τ", "tau-bar"} <= set(texts)
@@ -144,32 +128,3 @@ def test_a_figure_has_columns_a_drawing_and_a_sentence(figure: Figure) -> None:
     assert figure.caption.endswith(".")
     assert len(set(figure.needs)) == len(figure.needs) > 0
     assert all(isinstance(name, str) for name in (figure.cases, *figure.needs))
-
-
-def half_widths(axes: Any) -> list[float]:
-    """Half of each error bar's length at the first place."""
-    segments = [container.lines[2][0].get_segments()[0] for container in axes.containers]
-    return [float(np.ptp(segment[:, 1])) / 2 for segment in segments]
-
-
-def test_each_mean_of_section_8_has_its_own_interval() -> None:
-    """Curves in the order of loads, elastic before capped: half widths of 0.001 to 0.006."""
-    data: dict[str, Any] = {"sigma_e (um)": [0.5, 1.0], "psi": [1.0, 2.0], "Eq. (11)": 0.1}
-    for k, (load, model) in enumerate((load, model) for load in LOADS for model in MODELS):
-        width = 0.001 * (k + 1)
-        data |= {
-            f"mu, {model}, {load}": [0.11 + 0.001 * k] * 2,
-            f"mu half width, {model}, {load}": [width] * 2,
-        }
-        data |= {f"A (mm^2), {model}, {load}": [k + 1.0] * 2}
-        data |= {f"A half width (mm^2), {model}, {load}": [10 * width] * 2}
-        data |= {f"mean pressure / H, {model}, {load}": [0.1 * k, 0.2], f"plastic share, {load}": [0.3, 0.4]}
-    canvas = Canvas()
-    BEYOND_YIELD[0].draw(canvas, data)
-    friction, area, pressure, share = canvas.axes
-    assert half_widths(friction) == pytest.approx([0.001, 0.002, 0.003, 0.004, 0.005, 0.006])
-    assert half_widths(area) == pytest.approx([0.01, 0.02, 0.03, 0.04, 0.05, 0.06])
-    means = [container.lines[0].get_ydata()[0] for container in friction.containers]
-    assert means == pytest.approx([0.11, 0.111, 0.112, 0.113, 0.114, 0.115])
-    assert [line.get_ydata()[0] for line in pressure.lines[:6]] == pytest.approx([0, 0.1, 0.2, 0.3, 0.4, 0.5])
-    assert [list(line.get_ydata()) for line in share.lines] == [[0.3, 0.4]] * 3

@@ -93,7 +93,7 @@ def test_the_summary_lists_nothing_when_all_passed() -> None:
 
 
 def test_no_request_leaves_the_page() -> None:
-    page = Page(render(results(case("kernels/textbook-x-fails", data=TEXTBOOK))))
+    page = Page(render(results(case("kernels/textbook-normal-fails", data=TEXTBOOK))))
     assert all(link.startswith(("#", "data:text/csv;charset=utf-8,")) for link in page.links)
     assert "link" not in page.tags
     assert page.images[0]["aria-label"]
@@ -102,7 +102,7 @@ def test_no_request_leaves_the_page() -> None:
 
 @pytest.mark.parametrize("data", [{}, {**TEXTBOOK, "textbook": []}, {**TEXTBOOK, "production": None}])
 def test_a_figure_without_data_is_not_available(data: dict[str, object]) -> None:
-    page = Page(render(results(case("kernels/textbook-x-fails", data=data))))
+    page = Page(render(results(case("kernels/textbook-normal-fails", data=data))))
     assert page.images == []
     assert "Figure not available" in page.text
 
@@ -180,11 +180,12 @@ def test_what_is_not_a_result_file_is_refused(broken: object) -> None:
 
 
 def test_a_figure_stands_on_the_page_once() -> None:
-    data = {"M": [32, 64, 128], "error": [4.0, 2.0, 1.0]}
-    other = {"M": [32, 64, 128], "error": [4.0, 2.0, 2.0]}
+    law = {"load / load of first yield": [1, 2], "mean pressure / H, cap": [0.5, 0.6]}
+    data = law | {"mean pressure / H, law": [0.5, 0.7]}
+    other = law | {"mean pressure / H, law": [0.5, 0.8]}
     for second, number in ((dict(data), 1), (other, 2)):
         made = results(
-            case("reference/a-approach-order", data=data), case("reference/b-approach-order", data=second)
+            case("capped/sphere-k", title="one", data=data), case("capped/sphere-j", title="one", data=second)
         )
         assert len(Page(render(made)).images) == number
 
@@ -196,7 +197,7 @@ def test_progress_names_every_case_as_it_is_drawn() -> None:
 
 
 def run_of(seconds: float, date: str, commit: str, processor: str) -> dict[str, object]:
-    made = results(case("kernels/textbook-x-fails", data=TEXTBOOK, seconds=seconds))
+    made = results(case("kernels/textbook-normal-fails", data=TEXTBOOK, seconds=seconds))
     machine = {"cores": 2, "processor": processor, "platform": "Linux"}
     made["provenance"] |= {"date": f"{date}T00:00:00+00:00", "commit": commit, "machine": machine}
     return made

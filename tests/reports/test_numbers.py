@@ -26,7 +26,7 @@ from tests.reports.sample import case
 
 CASES = {
     "reproduction/table3-area": case("a/1", data={
-        "sigma_e (um)": [0.0, 1.68, 1.68],
+        "sigma_e (um)": [0.0, 1.6821, 1.6821],
         "mesh": [512, 256, 512],
         "printed": [0.64e-6, 0.21e-6, 0.2e-6],
         "ours": [0.65e-6, 0.22e-6, 0.19e-6],
@@ -46,7 +46,7 @@ def test_means_of_two_ensembles_scatter_both() -> None:
     assert ball.uncertainty == pytest.approx(0.0005)
     assert (rough.difference, rough.within, ball.within) == (pytest.approx(-0.01), False, False)
     assert rough.ratio == pytest.approx(0.95)
-    assert (coarse.label, rough.label) == ("σ_e 1.68 µm, 256²", "σ_e 1.68 µm, 512²")
+    assert (coarse.label, rough.label) == ("1.680 µm, 256²", "1.680 µm, 512²")
     assert fine([ball, coarse, rough]) == [ball, rough]
 
 
@@ -76,7 +76,7 @@ def test_statistics_of_one_surface_in_the_paper_scatter() -> None:
 
 
 def test_the_ratio_of_one_number_has_no_scatter() -> None:
-    (one,) = [n for n in numbers(CASES) if n.label == "σ_e 1.68 µm, 512²"]
+    (one,) = [n for n in numbers(CASES) if n.label == "1.680 µm, 512²"]
     assert ratio_and_scatter([one]) == (pytest.approx(0.95), None)
 
 
@@ -132,7 +132,7 @@ def test_what_is_missing_in_a_sentence_is_not_available() -> None:
 
 
 ROUNDING = {
-    "sigma_e (um)": [0.0, 1.68],
+    "sigma_e (um)": [0.0, 1.6821],
     "A: u of inputs": [0.024, 0.01],
     "A: change at R = 0.143 m": [0.0142, 0.0],
     "p_max: u of inputs": [0.024, 0.01],
@@ -173,9 +173,9 @@ def test_a_long_case_stands_for_the_quick_one_where_it_passed(status: str, value
 
 
 NUMBERS = [
-    Number("Table 3", "μ, Table 3", "σ_e 1.68 µm, 512²", "", 0.1, 0.11, 0.004, 0.0005, 0.004),
-    Number("Table 3", "A, Table 3", "σ_e 0 µm, 512²", "mm²", 0.5, 0.5004, 0.0, 0.0005),
-    Number("Table 3", "A, Table 3", "σ_e 0 µm, 256²", "mm²", 0.5, 0.9, 0.0, 0.0005),
+    Number("Table 3", "μ, Table 3", "1.680 µm, 512²", "", 0.1, 0.11, 0.004, 0.0005, 0.004),
+    Number("Table 3", "A, Table 3", "smooth, 512²", "mm²", 0.5, 0.5004, 0.0, 0.0005),
+    Number("Table 3", "A, Table 3", "smooth, 256²", "mm²", 0.5, 0.9, 0.0, 0.0005),
 ]
 COVERED = [
     {
@@ -208,7 +208,7 @@ def test_the_first_page_by_hand() -> None:
     found = front_page(evidence, [], NUMBERS)
     assert (found.unexplained, found.worst, found.conversion) == ([NUMBERS[0]], [NUMBERS[0]], 1)
     assert found.table3_rows == {"μ": NUMBERS[:1], "A (mm²)": NUMBERS[1:2]}
-    assert found.roughness == ["1.68 µm", "0 µm"]
+    assert found.roughness == ["1.680 µm", "smooth"]
     assert found.hertz == ["approach 2.5 for 2.4 µm (4.2e-02)"]
     assert found.quantities == [("μ, Table 3", 1, "1.100", "", 0), ("A, Table 3", 1, "1.001", "", 1)]
     bars, extremes = found.trust

@@ -25,7 +25,7 @@ def test_everything_has_a_name(html: str) -> None:
     assert not re.search(r"<th[^>]*>\s*</th>", html)  # the script makes buttons of heads
     assert all(image["aria-label"] for image in Page(html).images)
     captions = re.findall(r"<figcaption>Figure \d+\. (.*?)\s*<", html, flags=re.S)
-    assert len(captions) > 50
+    assert 30 < len(captions) <= 48
     assert "The series that the case recorded" not in html
     assert len(captions) == len(set(captions))
     levels = [int(level) for level in re.findall(r"<h(\d)\b", html)]
@@ -52,11 +52,26 @@ def test_a_statement_has_one_verdict_wherever_it_stands(html: str) -> None:
 @pytest.mark.slow
 def test_figures_have_symbols_and_units_and_no_hatching(html: str) -> None:
     figures = re.findall(r'<svg class="plot".*?</svg>', html, flags=re.S)
-    assert len(figures) > 50
+    assert len(figures) > 30
     texts = [text for figure in figures for text in re.findall(r"<text\b[^>]*>([^<]*)</text>", figure)]
     plain = re.compile(r"(?<![\w-])(mu|tau|beta|f_max|\d um|mm\^2|\(m\))(?![\w-])")
     assert [text for text in texts if plain.search(text)] == []
     assert not any("<pattern" in figure for figure in figures)
+
+
+PHONE = 396
+"""Pixels of a figure's width in a window of 420."""
+
+
+@pytest.mark.slow
+def test_letters_of_figures_have_9_pixels_on_a_phone(html: str) -> None:
+    styles = dict(re.findall(r"\.(s\d+)\{([^}]*)\}", html))
+    figures = re.findall(r'<svg class="plot".*?</svg>', html, flags=re.S)
+    for figure in figures:
+        width = float(re.search(r'viewBox="0 0 ([\d.]+)', figure)[1])  # type: ignore[index]  # every one has it
+        used = " ".join(styles[name] for name in set(re.findall(r'class="(s\d+)"', figure)))
+        sizes = [float(size) for size in re.findall(r"font(?:-size)?: (?:\w+ )*([\d.]+)px", used)]
+        assert min(sizes) * PHONE / width >= 9
 
 
 @pytest.mark.slow

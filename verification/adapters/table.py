@@ -20,8 +20,9 @@ from refimpl.grid import Array
 from verification.adapters import aspher, contactmechanics, negative_controls, slippy, tamaas
 from verification.adapters.published_code import PublishedCode
 from verification.framework.case import Metric, Result, Status, jsonable
-from verification.output.files import Progress, write_result
+from verification.output.files import Progress
 from verification.output.provenance import provenance
+from verification.output.result_files import write_result
 from verification.solver_suite import own, reference_solution
 from verification.solver_suite.protocol import Abilities, Answer, ContactProblem, abilities_of
 from verification.solver_suite.suite import identity, suite

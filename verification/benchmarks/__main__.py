@@ -13,9 +13,9 @@ from verification.benchmarks.codes import codes
 from verification.benchmarks.problems import FLATS
 from verification.benchmarks.summary import lines, ratios, row
 from verification.framework.case import jsonable
-from verification.output.files import Progress, write_result
+from verification.output.files import Progress
 from verification.output.provenance import provenance
-from verification.output.result_files import read_result
+from verification.output.result_files import read_result, write_result
 from verification.output.text_table import columns
 
 CLOCK = (

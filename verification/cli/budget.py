@@ -20,6 +20,7 @@ def document(budgets: Budgets) -> dict[str, object]:
         "tolerances": dict(budgets.tolerances),
         "numbers": {number: _parts(part) for number, part in budgets.numbers.items()},
         "derivatives": {name: dict(row) for name, row in budgets.derivatives.derivatives.items()},
+        "contact_stiffness": budgets.derivatives.contact_stiffness,
         "derivatives_scatter": {name: dict(row) for name, row in budgets.derivatives.scatter.items()},
     }
 
@@ -49,7 +50,8 @@ def table(budgets: Budgets) -> str:
     return (
         "uncertainty budget of mu and A (both corrected), p_max and Q (95 %, in per cent of each):\n"
         f"{columns([header, *rows])}\n{_in_words(budgets)}\n\n"
-        f"change in per cent for one per cent of a parameter:\n{columns([header, *changes])}"
+        f"change in per cent for one per cent of a parameter:\n{columns([header, *changes])}\n"
+        f"contact stiffness dN/d(approach): {budgets.derivatives.contact_stiffness:.4g} N/m"
     )
 
 

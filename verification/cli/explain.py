@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from refimpl.half_space.warning import ALLOWED, expected_error
 from refimpl.scene.discretise import discretise
 from refimpl.scene.resolution import resolution
+from refimpl.solution.rough_contact import estimates_of
 from verification.output.text_table import columns
 
 if TYPE_CHECKING:
@@ -66,6 +67,7 @@ def document(options: Options, plan: Plan, scene: str, expected: Forecast | None
         "budget": plan.budget,
         "terms": [{**asdict(term), "label": term.label} for term in plan.terms],
         "expected": asdict(plan.contact),
+        "theories": [asdict(found) for found in estimates_of(options.scene, plan.grid)],
         "resolution": None if resolved is None else asdict(resolved),
         "memory": plan.memory,
         "forecast": forecast,
@@ -95,6 +97,10 @@ def _expectations(options: Options, plan: Plan) -> list[list[str]]:
         if refined:  # the grid is not known yet
             seen = f"{resolved.required:.3g} required by the accuracy"
         rows.append([f"elements per {resolved.detail.name}", seen])
+    rows += [
+        [f"{found.theory} (elastic)", f"A {found.area * 1e6:.3g} mm^2, {found.mean_pressure / 1e6:.4g} MPa"]
+        for found in estimates_of(options.scene, grid)
+    ]
     slope, error = expected_error(discretise(options.scene, grid))
     if error > ALLOWED:
         told = f"slopes of {math.degrees(slope):.2g} degrees: N at a given approach may be off by {error:.0%}"

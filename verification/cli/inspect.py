@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import argparse
 import math
+from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from verification.cli.options import (
     Options,
@@ -13,8 +14,9 @@ from verification.cli.options import (
     one_or_two_lengths,
     option,
     output_file,
+    three_numbers,
 )
-from verification.cli.output import PICTURES, StatusLine, check_outputs, check_suffix, emit, plain
+from verification.cli.output import PICTURES, StatusLine, check_outputs, check_suffix, emit, plain, refusal
 from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
@@ -28,6 +30,9 @@ EPILOG = """examples:
 --fit prints a surface for a scene file, with standard deviations; another seed is another specimen.
 """
 SCALES = ((1.0, "m"), (1e-3, "mm"), (1e-6, "um"), (1e-9, "nm"), (0.0, "pm"))
+KEYS = (
+    "unit", "pixel_size", "channel", "level", "outliers", "scan_lines", "low_pass", "high_pass", "centre",
+)  # fmt: skip
 
 OPTIONS: Options = {
     "file": option("an instrument's file, .npy, .csv, .txt, .xyz ...", metavar="FILE"),
@@ -39,10 +44,17 @@ OPTIONS: Options = {
         type=name_or_number,
     ),
     "--outliers": option("drop points K spreads off their neighbours", metavar="K", type=float),
+    "--scan-lines": option("level each line along this axis", choices=("x", "y")),
     "--low-pass": option("damp wavelengths below L (m)", metavar="L", type=float),
     "--high-pass": option("damp wavelengths above L (m)", metavar="L", type=float),
     "--centre": option("middle of the window (m); needs --size", metavar="X,Y", type=one_or_two_lengths),
     "--size": option("edges of the window (m)", metavar="LX[,LY]", type=one_or_two_lengths),
+    "--with": option(
+        "area and mean pressure by Persson and by Greenwood and Williamson, of a body of this modulus (Pa) "
+        "and Poisson's ratio under a rigid flat with this load (N)",
+        metavar="E,NU,LOAD",
+        type=three_numbers,
+    ),
     "--fit": option("fit a random surface, print it as TOML", choices=("gaussian", "self-affine")),
     "--plot": option("map, autocorrelation, spectrum as PNG", metavar="FILE", type=output_file),
 }
@@ -54,12 +66,14 @@ def run(options: argparse.Namespace) -> int:
 
     check_suffix("--plot", options.plot, PICTURES)
     check_outputs([Path(options.file)], plot=options.plot, json=options.json)
-    names = ("unit", "pixel_size", "channel", "level", "outliers", "low_pass", "high_pass", "centre")
-    keys = {name: value for name in names if (value := getattr(options, name)) is not None}
+    keys = {name: value for name in KEYS if (value := getattr(options, name)) is not None}
     with StatusLine() as line:
         line.show(f"{options.file}: reading")
         found = inspect_surface(options.file, size=options.size, **keys)
         document, text = found.document(), table(found)
+        if pressed := getattr(options, "with"):
+            document["theories"], shown = _theories(found, *pressed)
+            text += f"\n\n{shown}"
         if options.fit:
             line.show(f"{options.file}: fitting")
             fit = found.fit(options.fit)
@@ -76,6 +90,22 @@ def run(options: argparse.Namespace) -> int:
             draw_inspection(found, options.plot)
     emit(plain(document), options.json, text)
     return 0
+
+
+def _theories(found: Inspection, E: float, nu: float, load: float) -> tuple[list[dict[str, Any]], str]:
+    """What both theories have for the levelled map under a rigid flat, as plain values and as a table."""
+    from refimpl import Material
+    from refimpl.solution.rough_contact import Roughness, estimates
+
+    if not load > 0:
+        raise refusal("--with", load, "a positive load in N")
+    material = Material(E=E, nu=nu)
+    area = math.prod(n * edge for n, edge in zip(found.z.shape, found.pixel, strict=True))
+    modulus = material.E / (1 - material.nu**2)
+    pressed = estimates(load, area, Roughness.of(found.z, found.pixel), modulus)
+    rows = [["theory (elastic)", "A/A0", "mean pressure"]]
+    rows += [[e.theory, f"{e.area / area:.3g}", f"{e.mean_pressure / 1e6:.4g} MPa"] for e in pressed]
+    return [asdict(estimate) for estimate in pressed], columns(rows)
 
 
 def table(found: Inspection) -> str:

@@ -160,6 +160,8 @@ elements = _parts(
 """A grid: a number of elements, or two."""
 lengths = _parts("expected two lengths in m like 2e-3x1e-3, not {!r}", float, tuple, "x", (2,))
 """A size: two lengths (m)."""
+three_numbers = _parts("expected three numbers like 210e9,0.3,10, not {!r}", float, tuple, ",", (3,))
+"""A modulus (Pa), Poisson's ratio and a load (N)."""
 one_or_two_lengths = _parts(
     "expected a length in m, or two with a comma between, not {!r}",
     float,

@@ -1,10 +1,9 @@
-"""`rough-friction report`: result files as a self-contained HTML page, and as PDF."""
+"""`rough-friction report`: result files as a self-contained HTML page."""
 
 from __future__ import annotations
 
 import argparse
 import os
-import sys
 from datetime import UTC, datetime
 from importlib import resources
 from pathlib import Path
@@ -12,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from verification.cli.options import Options, option
 from verification.cli.output import StatusLine, check_outputs, emit, refusal
-from verification.cli.pdf import PAPERS, compacts, printed
 from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
@@ -22,7 +20,7 @@ if TYPE_CHECKING:
 EPILOG = """examples:
   rough-friction verify --tier quick --json results.json
   rough-friction report --results results.json --output report
-  rough-friction report --results results.json --against older.json --pdf --paper letter
+  rough-friction report --results results.json --against older.json
 """
 
 OPTIONS: Options = {
@@ -30,15 +28,12 @@ OPTIONS: Options = {
     "--output": option("folder for the report", metavar="DIR", type=Path, default=Path("report")),
     "--committed": option("committed results (default: those of the package)", metavar="DIR", type=Path),
     "--against": option("add a section with the changes since this result file", metavar="OLD", type=Path),
-    "--pdf": option("also print it to PDF, by an installed Chromium", action="store_true"),
-    "--paper": option("size of paper (default a4)", choices=sorted(PAPERS), default="a4"),
 }
 
 
 def run(options: argparse.Namespace) -> int:
     """Make the report and print its path; the exit status is about that, not about the verdicts in it."""
-    from reports.departures import departures
-    from reports.evidence import gathered
+    from reports.evidence import departures, gathered
     from reports.generator import render
     from reports.results import CaseDataError, ResultFileError
     from verification.output.files import write_text
@@ -57,7 +52,7 @@ def run(options: argparse.Namespace) -> int:
     committed = {name_of(path): read_run(path, "--committed") for path in files}
     path = options.output / "report.html"
     read = [options.results, *([] if options.against is None else [options.against]), *files]
-    check_outputs(read, output=[path, path.with_suffix(".pdf")], json=options.json)
+    check_outputs(read, output=[path], json=options.json)
     above = (options.output, *options.output.absolute().parents)
     nearest = next(folder for folder in above if os.path.exists(folder))
     if not (nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)):
@@ -76,16 +71,10 @@ def run(options: argparse.Namespace) -> int:
     except (FileExistsError, NotADirectoryError, PermissionError) as refused:
         raise refusal("--output", str(options.output), "a folder that can be written to") from refused
     write_text(page, path)
-    written = [path]
-    if options.pdf:
-        written.append(printed(path, options.paper))
-        if not compacts():
-            sys.stderr.write("note: pikepdf is not installed (extra 'pdf'): the PDF is twice as large\n")
     rows = [[status, str(number)] for status, number in results["counts"].items()]
     document = {"report": str(path), "counts": results["counts"], "departures": said}
     notes = [wrapped(text, "other than the code: ") for text in said]
-    paths = [str(path.resolve()) for path in written]
-    emit(document, options.json, "\n".join([columns(rows, indent=""), *notes, *paths]))
+    emit(document, options.json, "\n".join([columns(rows, indent=""), *notes, str(path.resolve())]))
     return 0
 
 

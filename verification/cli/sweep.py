@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import math
 import sys
 from pathlib import Path
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from verification.sweep.run import Row
     from verification.sweep.study import Study
 
+FAILED = "FAILED"  # status of rows without numbers
+MOST_FILES = 7  # curves of a picture, one for each file; more are a mean with its scatter
 NAMES = {"friction_coefficient_corrected": "mu", "contact_area": "A"}
 SUFFIXES = {"store": ".sqlite", "csv": ".csv", "parquet": ".parquet", "json": ".json"}
 
@@ -68,6 +71,11 @@ OPTIONS: Options = {
         "with --plot: the column along y (default friction_coefficient_corrected)", metavar="COLUMN"
     ),
     "--by": option("with --plot: column that distinguishes the curves", metavar="COLUMN"),
+    "--keep-going": option(
+        "skip files that cannot be used; rows of these and of failed runs have the status FAILED and "
+        "the reason in place of warnings",
+        action="store_true",
+    ),
 }
 
 
@@ -81,14 +89,15 @@ def run(options: argparse.Namespace) -> int:
     if options.parquet is not None:
         export.require_parquet(options.parquet)
     store = options.store or Path(Path(options.study).stem + ".sqlite")
-    study = read_study(options.study)
+    study = read_study(options.study, keep_going=options.keep_going)
     check_plot(options, study)
     written = {name: getattr(options, name) for name in ("csv", "parquet", "json", "plot")}
     check_outputs(study.files, store=files_of(store), **written)
     _check_suffixes(store=options.store, **written)
     if options.scheduler is None:  # a cluster's memory is not this machine's
         posable.check_memory(study)
-    for note in (*study.notes, *directions_note(study)):
+    skipped = (f"skipped: {reason}" for reason in study.unusable.values())
+    for note in (*study.notes, *skipped, *directions_note(study)):
         print(f"rough-friction sweep: {note}", file=sys.stderr)
     line = _Line()
     try:
@@ -102,8 +111,21 @@ def run(options: argparse.Namespace) -> int:
     except engine.WorkersLost as lost:
         print(f"rough-friction sweep: {lost}", file=sys.stderr)
         return 1
-    _export(options, done, store)
-    return 1 if done.failures or done.unconverged else 0
+    _export(options, done, store, failed_rows(study, done) if options.keep_going else [])
+    return 1 if done.failures or done.unconverged or study.unusable else 0
+
+
+def failed_rows(study: Study, done: Sweep) -> list[Row]:
+    """Return a row for each run that failed and each file that was skipped: its inputs and the reason."""
+    runs = {run.key: run for run in study.runs()} if done.failures else {}
+    failed = [
+        {"key": key, **runs[key].coordinates, "status": FAILED, "warnings": reason}
+        for key, reason in done.failures.items()
+    ]
+    return failed + [
+        {"parameters": json.dumps({axis: path}), "status": FAILED, "warnings": reason}
+        for (axis, path), reason in study.unusable.items()
+    ]
 
 
 def directions_note(study: Study) -> list[str]:
@@ -139,7 +161,8 @@ def check_plot(options: argparse.Namespace, study: Study) -> None:
     options.y = options.y or "friction_coefficient_corrected"
     numbers = [axis for axis in several if axis != options.by and not axis.endswith((".path", ".seed"))]
     options.x = options.x or next(iter(numbers), "realisation")
-    others = [axis for axis in several if axis != options.x and not axis.endswith(".seed")]
+    few = {axis for axis in several if not axis.endswith(".path") or len(study.vary[axis]) <= MOST_FILES}
+    others = [axis for axis in several if axis in few and axis != options.x and not axis.endswith(".seed")]
     options.by = options.by or next(iter(others), None)
 
 
@@ -152,20 +175,20 @@ def _check_suffixes(**written: Path | None) -> None:
                 raise refusal(f"--{name}", str(path), allowed)
 
 
-def _export(options: argparse.Namespace, done: Sweep, store: Path) -> None:
+def _export(options: argparse.Namespace, done: Sweep, store: Path, failed: list[Row]) -> None:
     """Write and show what was asked for; the rows take the table's place on standard output."""
     from verification.output.provenance import provenance
     from verification.sweep import export
 
-    table = _table(done, store)
+    table, rows = _table(done, store), [*done.table(), *failed]
     if options.csv == Path("-"):
         if done.failures or done.unconverged:
             print(table, file=sys.stderr)
-        table = export.to_csv(done.table()).rstrip("\n")
+        table = export.to_csv(rows).rstrip("\n")
     elif options.csv is not None:
-        export.write_csv(done.table(), options.csv)
+        export.write_csv(rows, options.csv)
     if options.parquet is not None:
-        export.write_parquet(done.table(), options.parquet)
+        export.write_parquet(rows, options.parquet)
     if options.plot is not None and done.rows:
         from verification.cli.plot_curves import draw_sweep
         from verification.sweep.curves import curves
@@ -176,7 +199,7 @@ def _export(options: argparse.Namespace, done: Sweep, store: Path) -> None:
         "store": str(store),
         **{name: getattr(done, name) for name in ("found", "finished", "failures", "statuses")},
         "seconds": round(done.seconds, 3),
-        "rows": plain(done.table()),
+        "rows": plain(rows),
         "provenance": provenance(),
     }
     emit(document, options.json, table)

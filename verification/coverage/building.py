@@ -20,9 +20,9 @@ from refimpl.model.materials import Pair
 from verification.coverage.class_scenes import CLASSES, GRIDS, scene
 from verification.coverage.store import features_of
 from verification.coverage.textures import RoundedPunch
-from verification.output.files import Progress, write_result
+from verification.output.files import Progress
 from verification.output.provenance import provenance
-from verification.output.result_files import read_result
+from verification.output.result_files import read_result, write_result
 
 REFERENCE = 384  # elements along the longer side
 WAVES = "short waves"  # part of an error bar
@@ -158,7 +158,7 @@ def _restored(record: dict[str, Any]) -> GridFeatures:
     faces = [0.0] * len(NO_FACES)
     for k, n in record["faces"]:
         faces[k] = n
-    return as_corrected(features_of(record | {"faces": faces}))
+    return features_of(record | {"faces": faces})
 
 
 def as_corrected(features: GridFeatures) -> GridFeatures:

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import argparse
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
 import refimpl as rf
-from refimpl.grid import Array
 from refimpl.model.materials import Pair
 from verification.coverage.drawing import SIDE, Ball, Dice, Wave, measured_like
-from verification.coverage.textures import Profile, RoundedPunch, Spots
-from verification.output.files import Progress
+from verification.coverage.textures import Pads, Profile, RoundedPunch
 
 RMS = 1e-7  # m
 GRIDS = 48, 64, 96, 128  # elements along the longer side of the grids that are judged
@@ -147,7 +143,7 @@ def _textured(draw: _Draw, sign: float, number: int) -> rf.Surface:
     height = RMS * draw.log(1, 30)
     draw.slope = height / cell
     draw.ball = draw.ball or not draw.periodic
-    return Spots(sign * height, (number, number), radius, rim, draw.seed, square, rounded)
+    return Pads(sign * height, (number, number), radius, rim, draw.seed, square, rounded)
 
 
 def _pads(draw: _Draw) -> rf.Surface:
@@ -254,66 +250,10 @@ CLASSES: dict[str, Kind] = {
 }
 
 
-MEASURED, DECIMATED = "windows of a measured map", "decimated maps"
-WHOLE = 256  # points of a window that is decimated
-
-
-def read_heights(path: Path) -> Array:
-    """Return the heights of a measured surface at its own points (m)."""
-    surface = rf.MeasuredSurface(path)
-    lengths = surface.extent((0.0, 0.0))
-    pitch = surface.pitch(lengths)
-    shape = round(lengths[0] / pitch), round(lengths[1] / pitch)
-    return surface.sample(rf.Grid(shape, lengths))
-
-
-def windows_of(heights: Array, *, whole: bool = False) -> Kind:
-    """Return the class of random square windows of a measured map, at one rms height: 100 to 300 points, or
-    `WHOLE`."""
-
-    def window(draw: _Draw) -> rf.Surface:
-        points = WHOLE if whole else min(int(draw.rng.integers(100, 301)), *heights.shape)
-        i, j = (int(draw.rng.integers(length - points + 1)) for length in heights.shape)
-        z = heights[i : i + points, j : j + points]
-        draw.size, draw.periodic = (SIDE, SIDE), False
-        return rf.ArraySurface(RMS * (z - z.mean()) / z.std())
-
-    return window
-
-
-def decimated(one: rf.Scene, seed: int) -> tuple[rf.Scene, int]:
-    """Return the scene with every second or fourth point of its map, and a grid of two elements a point."""
-    step = (2, 4)[seed % 2]
-    z = one.lower.surface.parts[0].sample(one.grid(WHOLE))[::step, ::step]
-    return replace(one, lower=rf.Body(one.lower.material, rf.ArraySurface(z))), 2 * len(z)
-
-
-def options(module: str, description: str | None, scenes: int) -> argparse.ArgumentParser:
-    """Return the options of a study by class: seeds, a measured map, and the file to write."""
-    parser = argparse.ArgumentParser(
-        prog=f"python -m verification.coverage.{module}", description=description
-    )
-    parser.add_argument("--first", type=int, default=0, help="first seed")
-    parser.add_argument("--scenes", type=int, default=scenes, help="of each class")
-    parser.add_argument("--map", type=Path, help="a measured surface, of which windows are a class more")
-    parser.add_argument("--json", type=Path, required=True)
-    return parser
-
-
-def each(classes: Mapping[str, Kind], first: int, scenes: int) -> Iterator[tuple[str, int]]:
-    """Yield class and seed of every scene, with a line of progress."""
-    progress = Progress(len(classes) * scenes)
-    for kind in classes:
-        for seed in range(first, first + scenes):
-            yield kind, seed
-            progress.tick(f"{kind}, {seed}")
-    progress.close()
-
-
-def scene(kind: str, seed: int, classes: Mapping[str, Kind] = CLASSES) -> rf.Scene:
+def scene(kind: str, seed: int) -> rf.Scene:
     """Return the scene of a seed: its class's roughness on a flat, or under a ball where it is free."""
     draw = _Draw(kind, seed)
-    surface = classes[kind](draw)
+    surface = CLASSES[kind](draw)
     probe = rf.Scene(
         upper=rf.Body(draw.upper, draw.other or rf.Flat()),
         lower=rf.Body(draw.lower, surface),

@@ -28,12 +28,12 @@ from verification.coverage.building import Solved, pack, solve_all, solved, unpa
 from verification.coverage.class_scenes import CLASSES
 from verification.coverage.likelihood import Fitted, fit
 from verification.framework.case import jsonable
-from verification.output.files import write_result
 from verification.output.provenance import provenance
+from verification.output.result_files import write_result
 from verification.output.text_table import columns
 
 CONSTANTS = Path("refimpl/data/error_bars.json")
-FEATURES = Path("reports/results/error_bar_features.json.gz")  # of the building scenes
+FEATURES = Path("reports/results/error_bar_features.json.gz")  # building scenes
 BUILT, JUDGED = Path("build/error_bars_built.jsonl"), Path("build/error_bars_judged.jsonl")  # runs, resumable
 JUDGEMENT = Path("reports/results/coverage_corrected.json.gz")
 BUILDING_SEED, JUDGING_SEED = 5_000_000, 6_000_000
@@ -154,7 +154,7 @@ def area_constants(scenes: Sequence[Solved]) -> dict[str, Constant]:
     first = fit(errors, means, squares, freedoms=[4.0], prior=smoothness(), start=0.2)
     excess = (means @ first.mean)[:, None] ** 2
     found = fit(errors, means, np.hstack([squares, excess]), freedoms=FREEDOMS, prior=smoothness(), start=0.1)
-    normal = scipy.special.stdtrit(found.freedom, 0.975) / scipy.special.ndtri(0.975)  # of the same 95 %
+    normal = scipy.special.stdtrit(found.freedom, 0.975) / scipy.special.ndtri(0.975)  # at the same 95 %
     count = int(np.prod(KINDS))
     faces, face_errors = (values[:count].reshape(KINDS) for values in (found.mean, found.mean_error))
     return {

@@ -34,8 +34,9 @@ from verification.coverage.synthetic_tables import (
     yielding_table,
 )
 from verification.framework.case import jsonable
-from verification.output.files import Progress, write_result
+from verification.output.files import Progress
 from verification.output.provenance import provenance
+from verification.output.result_files import write_result
 
 LEVEL = 0.92  # share of 95 % intervals that must cover, at least
 BIAS = 0.2  # mean error of tau in its standard uncertainties, at most

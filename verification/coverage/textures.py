@@ -97,7 +97,7 @@ class Profile(rf.Surface):
 
 
 @dataclass(frozen=True)
-class Spots(rf.Surface):
+class Pads(rf.Surface):
     """Pads, or dimples of a negative height, in a lattice of ``numbers`` cells (m).
 
     They are round, or ``square``, of ``radius``, with a rim of width ``rim`` that falls as a straight wall,

@@ -63,7 +63,7 @@ def persson_rms_pressure(mean: ArrayLike) -> Array:
 
 
 def greenwood_williamson_area(
-    pressure: ArrayLike, summit_rms: float, summit_density: float, summit_radius: float
+    pressure: ArrayLike, rms: float, density: float, radius: float
 ) -> Array:
     """Return A/A0 of summits that do not interact, at ``pressure`` over E*, any shape.
 
@@ -75,14 +75,15 @@ def greenwood_williamson_area(
     >>> bool(np.isclose(greenwood_williamson_area(p, 1e-7, 1e9, 1e-4), np.sqrt(np.pi / 2) * 1e-2))
     True
     """
-    stiff = 4 / 3 * summit_density * summit_radius**0.5 * summit_rms**1.5
+    stiff = 4 / 3 * density * radius**0.5 * rms**1.5
 
     def area(p: float) -> float:
         z = brentq(lambda z: float(stiff * overlap_integral(np.array(z), 1.5)) / p - 1, -10, 12, xtol=1e-12)
         share = overlap_integral(np.array(z), 1.0)
-        return float(np.pi * summit_density * summit_radius * summit_rms * share)
+        return float(np.pi * density * radius * rms * share)
 
-    return np.vectorize(area, otypes=[float])(np.asarray(pressure, dtype=float))
+    areas: Array = np.vectorize(area, otypes=[float])(np.asarray(pressure, dtype=float))
+    return areas
 
 
 def kappa(area_fraction: ArrayLike, pressure: ArrayLike, modulus: float, rms_gradient: float) -> Array:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import glob
 import json
 import os
-import platform
 import re
 import secrets
 import shutil
@@ -15,19 +13,17 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from verification.output.result_files import encoded
-
 _UNUSUAL = re.compile(r"[^\n -~]")
-_SHOWN = 40  # characters of the names of target and machine in that of a temporary file
+_SHOWN = 40  # characters of the name of a target in that of its temporary file
 
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """A temporary path beside `path`, of the same suffix, that takes its place when the block ends well.
 
-    The file appears in one step; after an error the old file, if any, is still there. What a killed process
-    has left of an earlier attempt is removed. What is no regular file, a device or a pipe, is never replaced:
-    the finished file is copied to it. Nor is a link replaced, but the file that it leads to.
+    The file appears in one step; after an error the old file, if any, is still there. What is no regular
+    file, a device or a pipe, is never replaced: the finished file is copied to it. Nor is a link replaced,
+    but the file that it leads to.
     A new file has the mode that the umask leaves, another keeps its own.
     Raises OSError where the directory cannot be written to, or nobody reads the pipe.
     """
@@ -71,27 +67,15 @@ def try_out(path: Path) -> None:
 def _temporary(path: Path) -> Iterator[tuple[Path, Path]]:
     """The name of a new file, and the file that a link leads to, beside which it is.
 
-    It has the suffix of the path that was given, names its writer, and is gone afterwards.
+    It has the suffix of the path that was given, and is gone afterwards.
     """
     target = Path(os.path.realpath(path))
-    begin = f".{target.name[:_SHOWN]}.{platform.node()[:_SHOWN]}-"
-    _remove_left(target.parent, begin, path.suffix)
-    name = target.with_name(f"{begin}{os.getpid()}-{secrets.token_hex(4)}{path.suffix}")
+    name = target.with_name(f".{target.name[:_SHOWN]}.{secrets.token_hex(8)}{path.suffix}")
     try:
         name.open("xb").close()
         yield name, target
     finally:
         name.unlink(missing_ok=True)  # it may be at its place
-
-
-def _remove_left(folder: Path, begin: str, suffix: str) -> None:
-    """Remove temporary files of this machine whose writers are gone."""
-    for left in folder.glob(f"{glob.escape(begin)}*-????????{glob.escape(suffix)}"):
-        import psutil  # here and not above: there are hardly ever any
-
-        writer = left.name.removeprefix(begin).partition("-")[0]
-        if writer.isdecimal() and not psutil.pid_exists(int(writer)):
-            left.unlink(missing_ok=True)
 
 
 def write_text(text: str, path: Path) -> None:
@@ -110,13 +94,6 @@ def to_json(document: object, *, ascii_only: bool = False) -> str:
     """
     text = json.dumps(document, indent=1, allow_nan=False, ensure_ascii=ascii_only)
     return _UNUSUAL.sub(lambda c: c[0] if c[0].isprintable() else json.dumps(c[0])[1:-1], text) + "\n"
-
-
-def write_result(document: object, path: Path) -> None:
-    """Write a study's result file, compressed where the path ends in ``.gz``, in one step."""
-    content = encoded(document, path)
-    with replacing(path) as temporary:
-        temporary.write_bytes(content)
 
 
 def rewrite_line(text: str) -> None:

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import gzip
 import json
-import os
 import sys
 import zlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+
+from verification.output.files import replacing
 
 FOLDER = Path(__file__).parents[2] / "reports" / "results"
 """The committed result files."""
@@ -119,9 +120,8 @@ def encoded(document: object, path: Path) -> bytes:
 def write_result(document: object, path: Path) -> None:
     """Write the document in one step; raises ValueError as `encoded` does."""
     content = encoded(document, path)
-    temporary = path.with_name(f".{path.name}.new")
-    temporary.write_bytes(content)
-    os.replace(temporary, path)
+    with replacing(path) as temporary:
+        temporary.write_bytes(content)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

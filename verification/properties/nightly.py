@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import refimpl as rf
-from verification.output.files import Progress, write_result
+from verification.output.files import Progress
 from verification.output.provenance import provenance
-from verification.output.result_files import read_result
+from verification.output.result_files import read_result, write_result
 from verification.properties.check import search
 from verification.properties.registry import INVARIANTS, Solver
 

@@ -19,7 +19,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     os.environ.update(dict.fromkeys(THREADS, "1"))
 
-    from verification.output.files import Progress, write_result
+    from verification.output.files import Progress
+    from verification.output.result_files import write_result
     from verification.stress_tests import study
     from verification.stress_tests.axes import AXES, states
 

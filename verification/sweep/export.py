@@ -20,7 +20,6 @@ UNITS = {
     **{name: unit for name, (unit, _) in (SCENE | FRICTION).items()},
     **{name: "" if quantity.unit == "1" else quantity.unit for name, quantity in QUANTITIES.items()},
     **dict.fromkeys(("upper_rms", "lower_rms", "correlation_length"), "m"),
-    "elastic_friction": "N",
     "seconds": "s",
 }
 """Units of the columns; those of an error or a cycle are its number's, all others have none."""
@@ -73,6 +72,12 @@ def named(row: Row) -> Row:
     return found
 
 
+def _with_own_columns(rows: Sequence[Row]) -> tuple[list[Row], list[str]]:
+    """The rows, and names of their columns: after all others, what the study varies by full names."""
+    own = dict.fromkeys(name for row in rows for name in named(row))
+    return [row | named(row) for row in rows], [*EXPORTED, *own]
+
+
 def to_csv(rows: Sequence[Row]) -> str:
     """CSV text with a header; floats in their shortest exact form, None as an empty field.
 
@@ -81,8 +86,9 @@ def to_csv(rows: Sequence[Row]) -> str:
     """
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(map(header, EXPORTED))
-    writer.writerows([row.get(name) for name in EXPORTED] for row in rows)
+    rows, names = _with_own_columns(rows)
+    writer.writerow(map(header, names))
+    writer.writerows([row.get(name) for name in names] for row in rows)
     return buffer.getvalue()
 
 
@@ -97,7 +103,8 @@ def write_parquet(rows: Sequence[Row], path: Path) -> None:
     import pyarrow
     import pyarrow.parquet
 
-    table = pyarrow.table({header(name): [row.get(name) for row in rows] for name in EXPORTED})
+    rows, names = _with_own_columns(rows)
+    table = pyarrow.table({header(name): [row.get(name) for row in rows] for name in names})
     with replacing(path) as temporary:
         pyarrow.parquet.write_table(table, temporary)
 

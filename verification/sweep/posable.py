@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from refimpl.driver.options import Options
+from refimpl.errors import InputError
 from refimpl.model.problem import Terms
 from refimpl.planning.plan import memory_of
 from refimpl.scene.scene import Scene
@@ -37,6 +38,33 @@ def check(study: Study) -> None:
     for run in replace(study, realisations=1).runs():
         scene = scene_from_dict(run.inputs["scene"], Path())
         Options(scene=scene, grid=run.inputs["grid"], requested=requested, **options)
+    if not _files(study):  # sampled, each with the others' limits, by `unusable_files`
+        _sample(study)
+
+
+def unusable_files(study: Study) -> dict[tuple[str, str], str]:
+    """Return why varied files are refused, by axis and path.
+
+    Each is read and sampled, beside the other axes' limits.
+    Raises the first one's InputError where all of them are refused.
+    """
+    refused: dict[tuple[str, str], InputError] = {}
+    for axis, path in _files(study):
+        others = {name: values for name, values in study.vary.items() if not name.endswith(".path")}
+        try:
+            _sample(replace(study, vary=others | {axis: (path,)}))
+        except InputError as refusal:
+            refused[axis, path] = refusal
+    if refused and len(refused) == len(_files(study)):
+        raise next(iter(refused.values()))
+    return {file: f"{Path(file[1]).name}: {refusal}" for file, refusal in refused.items()}
+
+
+def _files(study: Study) -> list[tuple[str, str]]:
+    return [(axis, path) for axis, paths in study.vary.items() if axis.endswith(".path") for path in paths]
+
+
+def _sample(study: Study) -> None:
     for scene in _closest(study):
         scene.sampled(scene.grid(min(FINEST, study.finest)))
 

@@ -31,13 +31,12 @@ that the study varies by their full names.
 """
 
 _OF_A_RUN = (
-    "elastic_friction", "residual", "friction_coefficient_cycle", "contact_area_cycle", "border_elements",
+    "residual", "friction_coefficient_cycle", "contact_area_cycle", "border_elements",
     "plasticity_index", "elements_x", "elements_y", "warnings",
 )  # fmt: skip
 OUTCOMES = ("status", *QUANTITIES, *(f"{name}_error" for name in QUANTITIES), *_OF_A_RUN)
 """What a run gives: the numbers of `refimpl.Solution`, and ``..._error``, their bars: inf where unbounded,
-None without a rule. ``elastic_friction`` is ``sum f sin(theta_x) cos(theta_y) dA`` (N), the part of Eq. (3)
-that is not local friction; ``residual`` the certificate's largest; ``..._cycle`` what an alternating contact
+None without a rule. ``residual`` is the certificate's largest; ``..._cycle`` what an alternating contact
 edge under tau leaves open; ``border_elements`` the elements in contact on the domain's border;
 ``plasticity_index`` Eq. (12)'s, of the sampled slopes, None without a hardness; ``elements_x``,
 ``elements_y`` the grid solved on; ``warnings`` the names of the limits exceeded, separated by "; ".
@@ -122,8 +121,7 @@ def execute(inputs: Mapping[str, Any]) -> tuple[Row, float]:
 
 def outcome(solution: rf.Solution, scene: rf.Scene) -> Row:
     """The row of a solution of a scene."""
-    slopes, contact, pair = solution.slopes, solution.contact, solution.details.problem.pair
-    elastic = float(np.sum(solution.pressure * slopes.sin_x * slopes.cos_y)) * solution.grid.element_area
+    contact, pair = solution.contact, solution.details.problem.pair
     index = None
     if pair.softer_hardness is not None:
         index = pair.reduced_modulus / pair.softer_hardness * roughness_slope(scene, solution.grid)
@@ -135,7 +133,6 @@ def outcome(solution: rf.Solution, scene: rf.Scene) -> Row:
             f"{name}_cycle": solution.uncertainty.get(name, {}).get("active set", 0.0)
             for name in ("friction_coefficient", "contact_area")
         },
-        "elastic_friction": elastic,
         "residual": solution.certificate.largest,
         "border_elements": int(contact.sum() - contact[1:-1, 1:-1].sum()),
         "plasticity_index": index,

@@ -6,7 +6,7 @@ import itertools
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +36,8 @@ class Study:
     Realisations are of random roughness: where a point has none left, they are all one and the same run.
     ``normalise`` overrides that of the base scene's Gaussian parts unless None. ``settings`` go to
     `refimpl.solve`. ``files`` are those that the study was read from: its own, its scene's, its surfaces'.
-    ``notes`` say what was chosen for it. ``grid`` counts elements along the longer side of a rectangle.
+    ``notes`` say what was chosen for it. ``unusable`` has, by axis and path, the reasons for
+    varied files that were refused. ``grid`` counts elements along the longer side of a rectangle.
     """
 
     scene: Table
@@ -47,6 +48,7 @@ class Study:
     settings: Mapping[str, Any]
     files: tuple[Path, ...] = ()
     notes: tuple[str, ...] = ()
+    unusable: Mapping[tuple[str, str], str] = field(default_factory=dict)
 
     def runs(self) -> Iterator[Run]:
         """All runs, realisations outermost, then the axes in the order of `AXES`."""

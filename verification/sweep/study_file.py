@@ -23,9 +23,10 @@ KEYS = ("scene", "realisations", "first_seed", "normalise", "vary", "solve")
 SOLVE_KEYS = ("method", "oblique", "slope_correction", "tolerance", "accuracy", "quantity")
 
 
-def read_study(path: str | Path) -> Study:
+def read_study(path: str | Path, *, keep_going: bool = False) -> Study:
     """The study of a TOML file, or a shipped study by its name (see `shipped_studies`).
 
+    With ``keep_going``, varied files that cannot be used are skipped, and listed in ``unusable``.
     The scene is a shipped one's name or a path relative to the file. Raises InputError naming the field.
     """
     path = Path(path)
@@ -33,7 +34,7 @@ def read_study(path: str | Path) -> Study:
         if str(path) not in shipped_studies():
             raise InputError("study", str(path), f"a TOML file, or one of {', '.join(shipped_studies())}")
         path = Path(str(resources.files("verification").joinpath("studies", f"{path}.toml")))
-    study = study_from_dict(read_toml(path, "study"), path.parent)
+    study = study_from_dict(read_toml(path, "study"), path.parent, keep_going=keep_going)
     return replace(study, files=(path, *study.files))
 
 
@@ -47,7 +48,7 @@ def shipped_studies() -> tuple[str, ...]:
     return tuple(sorted(item.name[:-5] for item in folder.iterdir() if item.name.endswith(".toml")))
 
 
-def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
+def study_from_dict(table: Mapping[str, Any], folder: Path = Path(), *, keep_going: bool = False) -> Study:
     """The study of a parsed TOML table, with all that its runs would be refused for refused (`posable`)."""
     _refuse_unknown("study", table, KEYS)
     name = table.get("scene")
@@ -79,6 +80,7 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
         settings=dict(settings),
         files=(scene_file,),
     )
+    study = _with_usable_files(study, keep_going)
     study = replace(study, files=(scene_file, *map(Path, study.measured)))
     if "side" not in scene and "size" not in scene:
         x, y = posable.covered_size(study)
@@ -88,6 +90,21 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path()) -> Study:
         study = replace(study, scene=scene | {"size": [x, y]}, notes=(note,))
     _check(study)
     return study
+
+
+def _with_usable_files(study: Study, keep_going: bool) -> Study:
+    """The study without the varied files that are refused; without ``keep_going`` all of them at once."""
+    unusable = posable.unusable_files(study)
+    if unusable and not keep_going:
+        said = "".join(f"\n  {reason}" for reason in unusable.values())
+        raise InputError("vary", f"{len(unusable)} files", f"usable ones (--keep-going runs the rest):{said}")
+    usable = {
+        axis: tuple(value for value in values if (axis, value) not in unusable)
+        for axis, values in study.vary.items()
+    }
+    if not all(usable.values()):
+        raise InputError("vary", [path for _, path in unusable], "a usable file on each axis")
+    return replace(study, vary=usable, unusable=unusable)
 
 
 def varied_names(scene: Scene) -> tuple[str, ...]:

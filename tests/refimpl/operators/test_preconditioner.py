@@ -49,6 +49,18 @@ def test_the_preconditioner_is_symmetric_and_positive(shape: tuple[int, int], dy
     assert np.linalg.eigvalsh(found).min() > 0
 
 
+@pytest.mark.parametrize("size", [1e-200, 1e9])
+def test_single_precision_on_large_windows(size: float) -> None:
+    """Transforms of n points are wrong by about eps log2(n), in units of any size."""
+    operator = on(200, 210)
+    residual = size * np.random.default_rng(5).standard_normal((200, 210))
+    spectrum = np.fft.rfft2(residual, s=operator.circle[::-1], axes=(1, 0)) / (COMPLIANCE * operator.symbol)
+    expected = np.fft.irfft2(spectrum, s=operator.circle[::-1], axes=(1, 0))[:200, :210]
+    found = spectral(operator)(residual)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=16 * 2.0**-24 * np.abs(expected).max())
+    assert not np.allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+
+
 @pytest.mark.parametrize("aspect", [0.1, 1.0, 2.5])
 @pytest.mark.parametrize("shape", [(7, 5), (1, 81), (2, 130)])
 def test_symbols_are_positive(shape: tuple[int, int], aspect: float) -> None:
@@ -221,3 +233,10 @@ def test_small_windows_do_without() -> None:
     assert extended(mask, np.zeros((19, 421), dtype=bool)) is mask  # 7,999 elements
     assert isinstance(extended(mask, np.zeros((80, 100), dtype=bool)), ExtendedPreconditioner)
     assert extended(mask, np.zeros((127, 63), dtype=bool)) is not mask  # 8,001
+
+
+def test_means_fill_between_scattered_contact_and_keep_the_map_symmetric() -> None:
+    contact = np.random.default_rng(4).random((320, 330)) < 0.05
+    apply = ExtendedPreconditioner(spectral(on(320, 330)), contact)
+    a, b = (contact * field for field in np.random.default_rng(6).standard_normal((2, 320, 330)))
+    assert np.vdot(b, apply(a)) == pytest.approx(np.vdot(a, apply(b)), abs=1e-6 * np.vdot(a, apply(a)))

@@ -167,6 +167,3 @@ def test_two_rigid_bodies_are_refused() -> None:
     rigid = rf.Material(E=math.inf, nu=0.3)
     with pytest.raises(rf.InputError, match=r"upper\.material\.E = inf: expected a finite modulus"):
         strip(upper=rf.Body(rigid, rf.Flat()), lower=rf.Body(rigid, rf.Flat()))
-    for wrong in (-math.inf, math.nan, 1e101):
-        with pytest.raises(rf.InputError, match=r"^E = "):
-            rf.Material(E=wrong, nu=0.3)

@@ -485,3 +485,11 @@ def test_what_makes_another_realisation_has_no_derivative() -> None:
 def test_a_step_that_no_double_holds_is_refused() -> None:
     with pytest.raises(rf.InputError, match="a value with another allowed one"):
         both_sides("lay", 1e22, 1e-24, float)
+
+
+def test_contact_stiffness_of_a_ball_is_hertz() -> None:
+    scene = replace(rf.read_scene("hertz"), friction=rf.Friction())
+    found = sensitivity(scene, rf.solve(scene, 64), [])
+    modulus, radius = scene.materials.reduced_modulus, 1 / scene.curvature
+    hertz = 2 * modulus * (0.75 * scene.load * radius / modulus) ** (1 / 3)
+    assert found.contact_stiffness == pytest.approx(hertz, rel=0.02)

@@ -13,11 +13,11 @@ from scipy.interpolate import RectBivariateSpline
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.measured import MeasuredSurface
-from refimpl.measured.areal_parameters import Spectrum
 from refimpl.measured.detrending import DEGREES, fit
 from refimpl.measured.inspection import inspect_surface
 from refimpl.measured.missing_points import MAX_ELIMINATED, fill
 from refimpl.measured.readers import Overrides, read
+from refimpl.measured.spectrum import Spectrum
 from refimpl.surfaces import SurfaceWarning
 from tests.refimpl.surfaces.measured import (
     DX,

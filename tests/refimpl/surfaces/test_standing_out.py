@@ -30,6 +30,32 @@ def test_spikes_and_scars_are_counted(short_cut: float) -> None:
     assert scars(scarred) == 0
 
 
+def test_lines_of_a_scan_are_levelled_one_by_one(tmp_path: Path) -> None:
+    """A surface whose lines along x have mean and slope zero comes back, whatever was added to each line."""
+    rng = np.random.default_rng(4)
+    x = np.arange(40.0)[:, None]
+    z = np.sin(x / 3.0) * np.cos(np.arange(30.0) / 4.0)
+    z = z - np.polynomial.polynomial.polyval(x[:, 0], np.polynomial.polynomial.polyfit(x[:, 0], z, 1)).T
+    expected = z - np.median(z, axis=0)
+    expected -= expected.mean() - z.mean()
+    scanned = z + rng.normal(size=30) + rng.normal(size=30) * x / 20
+    scanned[7, 9] = np.nan
+    np.save(tmp_path / "a.npy", scanned)
+    np.save(tmp_path / "b.npy", scanned.T)
+    for name, axis in (("a", "x"), ("b", "y")):
+        keys = {"unit": "um", "pixel_size": 1e-6, "level": "none", "scan_lines": axis}
+        found = rf.inspect_surface(tmp_path / f"{name}.npy", **keys).z
+        found = 1e6 * (found if axis == "x" else found.T)
+        lines = np.arange(30) != 9  # its hole moves the fit of that line
+        away = (found - expected)[:, lines]
+        np.testing.assert_allclose(away, away.mean(), rtol=0, atol=1e-12)
+        assert np.isnan(found[7, 9])
+    with pytest.raises(rf.InputError, match="scan_lines"):
+        rf.MeasuredSurface("a.npy", scan_lines="z")
+    with pytest.raises(rf.InputError, match="scan_lines"):
+        rf.MeasuredSurface(tmp_path / "a.npy", **keys, repeats=True).prepared  # noqa: B018  # raises
+
+
 def test_the_note_names_the_option_that_removes_the_points(tmp_path: Path) -> None:
     path = plate.write(plate.sampled(plate.worn(), plate.Dirt(spikes=20), POINTS), tmp_path / "map.txt")
     found = rf.inspect_surface(path, unit="um", pixel_size=plate.PITCH, max_missing=0.2)

@@ -170,7 +170,8 @@ def test_random_tables_give_their_numbers_or_a_refusal(data: st.DataObject) -> N
         except InputError as refused:
             event("refused")
             if any(
-                word in str(refused) for word in ("a thousand times as much", "without their coordinates")
+                word in str(refused)
+                for word in ("a thousand times as much", "their coordinates", "second column", "on a grid")
             ):
                 return
             assert mark == "void" or (np.isfinite(z).sum(axis=1) == 0).any() or not _paired(z)

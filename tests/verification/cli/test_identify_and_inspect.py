@@ -150,11 +150,13 @@ def test_an_inspected_map_is_shown_written_and_drawn() -> None:
 
 
 def test_keys_reach_the_surface() -> None:
-    keys = "--level 3 --outliers 9 --low-pass 4e-6 --high-pass 60e-6 --centre 60e-6,60e-6 --size 80e-6"
-    document = answer(f"{SPECIMEN} {keys}")
+    keys = "--level 3 --scan-lines x --outliers 9 --low-pass 4e-6 --high-pass 60e-6 --size 80e-6"
+    document = answer(f"{SPECIMEN} {keys} --centre 60e-6,60e-6")
     assert document["level"] == 3
     assert document["window"]["points"] == [80, 54]
-    assert [note.split()[0] for note in document["notes"]] == ["0", "wavelengths", "wavelengths"]
+    assert [note.split()[0] for note in document["notes"]] == [
+        "0", "scan", "wavelengths", "wavelengths"
+    ]  # fmt: skip
 
 
 def test_a_parameter_without_a_value_is_a_dash_and_null() -> None:
@@ -181,7 +183,7 @@ def test_the_table_of_an_inspected_surface() -> None:
     assert rows(inspect.table(found)) > {
         "channel Z; there are also I", "points 30 x 20, 7 missing", "pixel 2 um x 500 nm",
         "size 60 um x 10 um", "level sphere, slopes 0.01, -0.02, radius 400 mm",
-        "psd_slope 3.0e-12 +- 1e-12 d ln C / d ln q below the 1/e length",
+        "psd_slope 3.0e-12 +- 1e-12 d ln C / d ln q below pi times the 1/e length",
         "window 8 x 9 points, 2 missing", "Sz 3 pm highest to lowest point",
     }  # fmt: skip
 

@@ -146,7 +146,7 @@ def test_a_folder_that_refuses(
         raise OSError(errno.EROFS, os.strerror(errno.EROFS), str(tmp_path))
 
     def turns(*_: object, **__: object) -> None:  # read-only once the solve has begun
-        monkeypatch.setattr(files, "_remove_left", refuses)
+        monkeypatch.setattr(files, "_temporary", refuses)
 
     monkeypatch.setattr(solve, "check_suffix", turns)
     late = run(f"solve hertz --grid 8 --json {tmp_path}/s.json")

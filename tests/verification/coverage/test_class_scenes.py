@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from pathlib import Path
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Array
-from verification.coverage.class_scenes import CLASSES, decimated, read_heights, scene, windows_of
+from verification.coverage.class_scenes import CLASSES, scene
 
 SEEDS = range(40)
 DRAWN = {kind: [scene(kind, seed) for seed in SEEDS] for kind in CLASSES}
@@ -206,71 +203,3 @@ def test_directions_of_lays_and_numbers_of_grooves() -> None:
     assert max(lay_lengths(one)[0] for kind in LAYS for one in DRAWN[kind]) <= 0.9 + 1e-12
     waves = [roughness(one) for one in DRAWN["grooves"]]
     assert {wave.numbers for wave in waves} == {(n, 0) for n in (1, 2, 3, 4)} | {(0, n) for n in (1, 2, 3, 4)}
-
-
-class Drawn:
-    """A generator of given integers that records the bounds of each draw."""
-
-    def __init__(self, *numbers: int) -> None:
-        self.numbers, self.asked = list(numbers), list[tuple[int, ...]]()
-
-    def integers(self, *bounds: int) -> int:
-        self.asked.append(bounds)
-        return self.numbers.pop(0)
-
-
-MAP: Array = np.random.default_rng(8).gamma(2.0, 3e-6, (310, 420))
-
-
-@pytest.mark.parametrize(
-    ("whole", "numbers", "asked"),
-    [
-        (False, (120, 17, 300), [(100, 301), (191,), (301,)]),
-        (True, (54, 0), [(55,), (165,)]),  # 256 points: the first of both bounds is out of the map
-    ],
-)
-def test_windows_of_a_map(whole: bool, numbers: tuple[int, ...], asked: list[tuple[int, ...]]) -> None:
-    """A square of free heights from anywhere in the map, with 0.1 um rms about zero."""
-    draw: Any = SimpleNamespace(rng=Drawn(*numbers), size=(1e-3, 4e-4), periodic=True)
-    surface: Any = windows_of(MAP, whole=whole)(draw)
-    assert draw.rng.asked == asked
-    assert (draw.size, draw.periodic) == ((1e-3, 1e-3), False)
-    i, j, points = (54, 0, 256) if whole else (17, 300, 120)
-    expected = MAP[i : i + points, j : j + points]
-    assert (surface.data.mean(), surface.data.std()) == (pytest.approx(0, abs=1e-18), pytest.approx(1e-7))
-    assert np.corrcoef(surface.data.ravel(), expected.ravel())[0, 1] == pytest.approx(1, abs=1e-12)
-
-
-def test_a_map_smaller_than_a_window_is_taken_whole() -> None:
-    draw: Any = SimpleNamespace(rng=Drawn(300, 0, 30), size=(1e-3, 1e-3), periodic=False)
-    surface: Any = windows_of(MAP[:90, :120])(draw)
-    assert draw.rng.asked[1:] == [(1,), (31,)]
-    assert surface.data.shape == (90, 90)
-
-
-@pytest.mark.parametrize(("seed", "step", "elements"), [(6, 2, 256), (9, 4, 128)])
-def test_decimated_maps(seed: int, step: int, elements: int) -> None:
-    """Every second or fourth of 256 points, on a grid of two elements a point; all else as it was."""
-    whole = scene("map", seed, {"map": windows_of(MAP, whole=True)})
-    thin, grid = decimated(whole, seed)
-    before, after = roughness(whole).data, roughness(thin).data
-    assert after.shape == (256 // step, 256 // step)
-    assert (after[3, 5], after[20, 0]) == (before[3 * step, 5 * step], before[20 * step, 0])
-    assert grid == elements
-    for name in ("upper", "friction", "load", "lengths", "periodic", "sliding_direction"):
-        assert getattr(thin, name) == getattr(whole, name)
-    assert thin.lower.material == whole.lower.material
-
-
-def test_heights_of_a_map_at_its_own_points(tmp_path: Path) -> None:
-    """Heights as they stand in the file, 5 x 4 points of 2 um, written from the top."""
-    heights = np.random.default_rng(2).uniform(-3e-7, 5e-7, (5, 4))
-    head = "# Channel: Topography\n# Width: 10 \xb5m\n# Height: 8 \xb5m\n# Value units: m\n"
-    rows = "\n".join("\t".join(f"{z:.9e}" for z in line) for line in heights.T[::-1])
-    (tmp_path / "map.txt").write_bytes((head + rows + "\n").encode("latin-1"))
-    read = read_heights(tmp_path / "map.txt")
-    assert read.shape == (5, 4)
-    plane = read - heights  # levelled or not: what differs is a plane
-    i, j = np.indices(read.shape)
-    fit = np.stack([np.ones(20), i.ravel(), j.ravel()], axis=1)
-    assert np.linalg.lstsq(fit, plane.ravel(), rcond=None)[1] == pytest.approx(0, abs=1e-28)

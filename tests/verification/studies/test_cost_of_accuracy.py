@@ -15,7 +15,8 @@ from verification.benchmarks.cost_of_accuracy import LOWER, class_scene, costs, 
 from verification.cli import main
 from verification.output.result_files import committed, read_result
 
-QUANTITIES = {"friction_coefficient", "contact_area", "max_pressure"}
+MU = "friction_coefficient_corrected"
+QUANTITIES = {MU, "contact_area_corrected", "max_pressure"}
 
 
 @pytest.mark.parametrize("scene", ["hertz", "rough-planes"])
@@ -24,11 +25,30 @@ def test_a_scene_has_a_table(scene: str, tmp_path: Path, capsys: pytest.CaptureF
     out = tmp_path / "t.json"
     assert main(["tradeoff", scene, "--grids", "12,8", "--reference", "48", "--json", str(out)]) == 0
     found, printed = json.loads(out.read_text()), capsys.readouterr().out
-    quantities = QUANTITIES - ({"friction_coefficient"} if scene == "hertz" else set())
+    quantities = QUANTITIES - ({MU} if scene == "hertz" else set())
     assert [row["M"] for row in found["grids"]] == [8, 12, 24]  # half the reference's too
-    assert all(set(row["errors"]) == quantities for row in found["grids"])
-    assert {row["quantity"] for row in found["prices"]} == quantities
-    assert all(name in printed for name in quantities)
+    assert all(set(row[key]) == quantities for row in found["grids"] for key in ("errors", "bars"))
+    assert all({row["quantity"] for row in found[key]} == quantities for key in ("prices", "shown"))
+    assert all(name in printed for name in (*quantities, "error met (known", "error bar shows it"))
+
+
+def test_the_errors_contain_the_references_own_bar_and_the_bars_are_the_grids() -> None:
+    scene = rf.read_scene("table1-smooth")
+    (row,), coarse, fine = solve_grids(scene, [16], 32), rf.solve(scene, grid=16), rf.solve(scene, grid=32)
+    exact, bar = fine.friction_coefficient_corrected, fine.error(MU)
+    assert bar
+    off = abs(coarse.friction_coefficient_corrected - exact)
+    assert row["errors"][MU] == pytest.approx((off + bar) / exact, rel=1e-12)
+    assert row["bars"][MU] == pytest.approx(coarse.error(MU) / exact, rel=1e-12)
+
+
+def test_a_demand_is_met_by_the_error_before_the_bar_shows_it() -> None:
+    rows = [
+        {"M": M, "transforms of 256": M, "seconds": 1.0, "errors": {MU: error}, "bars": {MU: bar}}
+        for M, error, bar in ((32, 0.02, 0.2), (64, 0.009, 0.05), (128, 0.004, 0.009))
+    ]
+    met, shown = ([row["M"] for row in costs([rows], key)] for key in ("errors", "bars"))
+    assert (met, shown) == ([32, 32, 64, None], [64, 128, 128, None])  # of 10, 3, 1 and 0.3 %
 
 
 def test_a_class_costs_the_median_of_its_realisations() -> None:
@@ -54,7 +74,8 @@ def test_an_unsettled_grid_meets_no_demand_and_an_unsettled_reference_judges_not
 
     stagnates(16)
     coarse, fine = solve_grids(rf.read_scene("hertz"), [8, 16], 32)
-    assert coarse["errors"]["contact_area"] < float("inf") == fine["errors"]["contact_area"]
+    name = "contact_area_corrected"
+    assert coarse["errors"][name] < float("inf") == fine["errors"][name]
     assert costs([[coarse, fine]])[0]["M"] is None
     stagnates(32)
     out = tmp_path / "t.json"

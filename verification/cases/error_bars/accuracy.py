@@ -89,7 +89,7 @@ def hertz_peaks() -> Measured:
 def edge_size() -> Measured:
     """Area that whole elements add along the edge of the Hertz contact.
 
-    Claim: the area that the edge's elements add, over what the edge rule takes off, is as their prior says
+    Claim: the area that the edge's elements add, over what the edge rule subtracts, is as their prior says
     Source: Hertz 1882; the prior by likelihood of the building scenes of `verification.coverage.fit`
     Tolerance: two standard deviations of the prior, fitted to scenes of which few are discs
     """

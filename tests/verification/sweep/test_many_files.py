@@ -1,0 +1,80 @@
+"""A night over many files of which some cannot be read: all named at once, the rest run, the rows kept."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+from refimpl.errors import InputError
+from tests import plate
+from verification.cli import main
+from verification.sweep.study_file import read_study
+
+POINTS = (40, 30)
+SCENE = """
+load = 0.05
+[upper.material]
+E = 210e9
+nu = 0.3
+[[upper.surface]]
+kind = "sphere"
+radius = 3e-3
+[lower.material]
+E = 210e9
+nu = 0.3
+[[lower.surface]]
+kind = "measured"
+path = "map0.txt"
+unit = "um"
+pixel_size = 1.6e-6
+[friction]
+tau = 60e6
+beta = 0.1
+"""
+
+
+@pytest.fixture
+def study(tmp_path: Path) -> Path:
+    """Eight maps, and two files that are none."""
+    for k in range(8):
+        z = plate.sampled(plate.worn(seed=k, rms=0.05e-6), plate.CLEAN, POINTS)
+        plate.write(z, tmp_path / f"map{k}.txt")
+    (tmp_path / "broken.txt").write_text("power failure at 02:13")
+    (tmp_path / "scene.toml").write_text(SCENE)
+    names = [f"map{k}.txt" for k in range(8)] + ["broken.txt", "lost.txt"]
+    table = f'scene = "scene.toml"\n[vary]\ngrid = 64\n"lower.surface[0].path" = {json.dumps(names)}\n'
+    (tmp_path / "night.toml").write_text(table)
+    return tmp_path / "night.toml"
+
+
+def test_all_files_that_cannot_be_read_are_named_at_once(study: Path) -> None:
+    with pytest.raises(InputError, match="2 files") as refused:
+        read_study(study)
+    assert all(name in str(refused.value) for name in ("broken.txt", "lost.txt", "--keep-going"))
+
+
+def test_keep_going_runs_the_rest_and_leaves_failed_rows(
+    study: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    folder = study.parent
+    given = ["--store", str(folder / "n.sqlite"), "--csv", str(folder / "n.csv"), "--workers", "1"]
+    picture = ["--plot", str(folder / "n.svg"), "--x", "load"]
+    assert main(["sweep", str(study), "--keep-going", *given, *picture]) == 1
+    rows = list(csv.DictReader((folder / "n.csv").open()))
+    named = {Path(row["lower.surface[0].path"]).name: row for row in rows}
+    assert len(named) == len(rows) == 10
+    failed = {name for name, row in named.items() if row["status"] == "FAILED"}
+    assert failed == {"broken.txt", "lost.txt"}
+    assert "lost.txt" in named["lost.txt"]["warnings"]
+    assert "map3.txt" not in (folder / "n.svg").read_text()  # eight files are a mean with its scatter
+    assert "Warning" not in capfd.readouterr().err
+
+
+def test_where_no_file_can_be_used_the_first_ones_reason_is_told(study: Path) -> None:
+    text = study.read_text()
+    study.write_text(text[: text.index('["map0')] + '["lost.txt"]\n')
+    with pytest.raises(InputError, match=r"lost\.txt"):
+        read_study(study, keep_going=True)
