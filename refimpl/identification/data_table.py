@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import csv
-import itertools
 import math
 import re
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 from refimpl.errors import MOST, InputError, require_number, require_regular, require_size
@@ -18,7 +18,8 @@ from refimpl.scene.scene import Body, Scene
 
 MAX_ROWS, MAX_BYTES = 1000, 1_000_000
 MIXED_FRICTION = 50.0  # ratio of two rows' mu from which one of them is taken to be in kN
-MOST_FRICTION = 50.0  # mu of every row: rubber under its own weight has 10
+MOST_FRICTION = 10.0  # mu of half of the rows: rubber under its own weight
+SWAPPED = 5.0  # ratio of friction at two loads against any law
 MIXED_LOADS = 300.0  # ratio of neighbouring loads, the same: no loading series leaves such a gap
 _FRICTION = {"mu": "u_mu", "friction_force": "u_friction_force"}
 _FRAME, _FILES = ("sliding_direction", "sliding_offset"), ("upper_file", "lower_file")
@@ -188,6 +189,31 @@ def _number(k: int, name: str, text: str) -> float:
     return number
 
 
+def _refuse_mixed_loads(rows: Sequence[Row]) -> None:
+    order = sorted(range(len(rows)), key=lambda k: rows[k].load)
+    jump, k = max((rows[order[k]].load / rows[order[k - 1]].load, k) for k in range(1, len(order)))
+    if jump > MIXED_LOADS:
+        apart = order[:k] if 2 * k < len(order) else order[k:]  # the fewer
+        named = ", ".join(f"row {one + 1} ({rows[one].load:.4g} N)" for one in sorted(apart)[:5])
+        raise InputError(
+            "data: load", f"{named}, {jump:.0f} times from the next", "loads in N (mN, kN mixed?)"
+        )
+
+
+def _refuse_swapped(rows: Sequence[Row]) -> None:
+    """No friction law with tau and beta has friction that falls with the load, or mu that rises with it."""
+    known = [row for row in rows if row.mu > 3 * row.u_mu]
+    if not known:
+        return
+    light, heavy = min(known, key=lambda row: row.load), max(known, key=lambda row: row.load)
+    if heavy.mu * heavy.load * SWAPPED < light.mu * light.load:
+        said = f"friction falls from {light.mu * light.load:.3g} to {heavy.mu * heavy.load:.3g} N"
+        raise InputError("data", f"{said} as the load rises", "columns load and mu in this order (swapped?)")
+    if heavy.mu > SWAPPED * light.mu > 0:
+        said = f"mu rises from {light.mu:.3g} to {heavy.mu:.3g} with the load"
+        raise InputError("data: mu", said, "mu = F / load (friction_force is a column of its own)")
+
+
 def check_rows(rows: Sequence[Row], unknowns: int = 2) -> tuple[Row, ...]:
     """Return the rows; raises `InputError` where the parameters cannot be found from them.
 
@@ -199,17 +225,17 @@ def check_rows(rows: Sequence[Row], unknowns: int = 2) -> tuple[Row, ...]:
         count = "two" if unknowns == 2 else f"{unknowns}"
         loads_found = f"{len(rows)} rows at {len(cases)} load{'s' if len(cases) > 1 else ''}"
         raise InputError("data", loads_found, f"at least {count} different loads")
-    loads = sorted(row.load for row in rows)
-    jump = max(high / low for low, high in itertools.pairwise(loads))
-    if jump > MIXED_LOADS:
-        raise InputError("data: load", f"neighbouring loads {jump:.0f} apart", "loads in N alone (kN mixed?)")
+    _refuse_mixed_loads(rows)
     mus = sorted(row.mu for row in rows if row.mu > 0)
     if mus and mus[-1] > MIXED_FRICTION * mus[0]:
         raise InputError("data: mu", f"{mus[0]:.3g} to {mus[-1]:.3g}", "forces in N alone (N and kN mixed?)")
-    if mus and mus[0] > MOST_FRICTION:
+    if mus and median(mus) > MOST_FRICTION:
         raise InputError(
-            "data: mu", f"{mus[0]:.3g} to {mus[-1]:.3g}", "friction and load in N (mN, kN mixed?)"
+            "data: mu",
+            f"{mus[0]:.3g} to {mus[-1]:.3g}",
+            "friction and load in N (mN, kN mixed?), mu as a number (per cent?)",
         )
+    _refuse_swapped(rows)
     if all(row.u_mu > row.mu for row in rows):
         least = min(row.u_mu for row in rows)
         raise InputError("data: u_mu", f"{least:.3g} or more", "uncertainties below mu itself (in per cent?)")

@@ -18,7 +18,7 @@ from refimpl.surfaces.noise_lattice import DECAY
 from refimpl.surfaces.statistics import kurtosis, rms_height, skewness
 
 Pixel = tuple[float, float]
-SLOPES = 1e-5, 10.0  # rms slopes of machined, polished and worn surfaces lie between; um for m is 1e6
+SLOPES = 1e-4, 10.0  # rms slopes of machined, polished and worn surfaces lie between; um for m is 1e6
 ISOTROPIC = 1.1  # ratio of correlation lengths up to which a map counts as isotropic, or by chance:
 BY_CHANCE = 3.0  # times the correlation length over the root of the area: two of the ratio's deviations
 DIRECTIONS = 180  # directions of the half-circle in which the autocorrelation is followed

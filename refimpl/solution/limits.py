@@ -289,7 +289,8 @@ def _expected_size(evidence: Evidence) -> str:
         return ""
     radius = (0.75 * problem.load / (problem.pair.reduced_modulus * scene.curvature)) ** (1 / 3)
     half = min(problem.grid.lengths) / 2
-    return f": Hertz's contact radius is {radius:.3g} m, half of the domain {half:.3g} m"
+    unit = f" (is the radius {1 / scene.curvature:.3g} m?)" if radius > half else ""
+    return f": Hertz's contact radius is {radius:.3g} m, half of the domain {half:.3g} m{unit}"
 
 
 def _is_concave(body: Body, sign: int) -> bool:

@@ -134,7 +134,7 @@ def _run(arguments: Sequence[str] | None) -> int:
     _end_in_order()
     options = top.parse_args(joined(sys.argv[1:] if arguments is None else arguments))
     from appendix_a.errors import InputError as AppendixInputError  # here and not above: --help is quick
-    from refimpl.errors import InputError
+    from refimpl.errors import InputError, NotConverged
 
     try:
         status: int = options.run(options)
@@ -148,7 +148,7 @@ def _run(arguments: Sequence[str] | None) -> int:
         print(f"{top.prog}: the output could not be written: {failure.strerror}{where}", file=sys.stderr)
         return FAILED
     except ArithmeticError as hopeless:
-        if type(hopeless) is not ArithmeticError:  # the solvers' own word; a division by zero is a bug
+        if type(hopeless) not in (ArithmeticError, NotConverged):  # the solvers' own; 1 / 0 is a bug
             raise
         print(f"{top.prog}: no solution was found: {hopeless}", file=sys.stderr)
         return FAILED

@@ -319,3 +319,10 @@ def test_loads_under_a_cap_end_at_the_hardness_times_the_rectangle(size: tuple[f
         Options(scene=replace(scene, load=601.0), grid=8)
     assert refused.value.field == "load"
     Options(scene=replace(scene, load=601.0), grid=8, requested=Terms(plastic=False))
+
+
+def test_a_contact_beyond_the_domain_asks_for_the_radius_too() -> None:
+    """A radius in mm, typed as m, presses the whole domain flat."""
+    bodies = rf.Body(STEEL, rf.Sphere(3.0)), rf.Body(STEEL, rf.Flat())
+    scene = rf.Scene(*bodies, rf.Friction(), load=2.0, side=2e-4)
+    assert "is the radius 3 m?" in str(named(rf.solve(scene, 16))[Limit.BORDER])
