@@ -8,19 +8,18 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from reports import agreement, solver_under_test
+from reports import agreement
 from reports.agreement_figure import AGREEMENT
 from reports.catalogue import figures_of
 from reports.chapters import all_chapters, exhibits_of, subjects_of
 from reports.claims import judged, of_the_conversion, shown, statements
-from reports.comparison import compared
 from reports.drawing import Figure
-from reports.evidence import Evidence, gathered, groups
+from reports.evidence import Evidence, gathered, groups, revisions_of
+from reports.evidence import rerun as rerun_with
+from reports.exhibit import Album
 from reports.findings import by_claim, plain_note
 from reports.front_page import front_page
-from reports.pictures import Album
-from reports.results import Case, CaseDataError, shaped, shown_status
-from reports.revisions import revisions_of
+from reports.results import Case, CaseDataError, compared, shaped, shown_status
 from reports.text import cell, decimals, interval, judgement, number, quoted, symbols
 
 
@@ -161,6 +160,6 @@ def again(evidence: Evidence) -> str:
 def rerun(case: Case, evidence: Evidence) -> str:
     """The command that runs this case alone, with the solver that it was run with."""
     if evidence.solver is not None and case["origin"] is None:
-        return solver_under_test.rerun(evidence.run["provenance"]["command"], case["id"])
+        return rerun_with(evidence.run["provenance"]["command"], case["id"])
     tier = " --tier full" if case["tier"] == "full" else ""
     return f"rough-friction verify{tier} --only {shlex.quote(case['id'])}"

@@ -40,22 +40,18 @@ a product takes 0.75 of the time for 256, 0.55 for 512, 0.48 for 1024.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
-
-import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
 from refimpl.grid import Array, Grid, Shape, Window
 from refimpl.grid.window import padded_length
+from refimpl.operators.coarse_grid import CoarseGrid
 from refimpl.operators.fft import Counter, FFTInfluence
-from refimpl.operators.split_kernels import COARSER, REACH, WIDTH, far_quarter, near_quarter, window
+from refimpl.operators.split_kernels import REACH, WIDTH, far_quarter, near_quarter, window
 
 Quarter = Callable[[str, Shape], Array]
 """A kernel at the offsets from 0 to half of each circle, in elements of edge one."""
 
 ERROR = 1e-11  # share of the largest displacement, at most (a test)
 TOLERANCE = 1e-9  # least tolerance of a solve that such products serve
-_CELLS = 8  # cells of the coarse grid in a block
 _LEAST = 240  # elements per side of a window from which they are quicker
 
 
@@ -71,7 +67,7 @@ class NearFarInfluence(FFTInfluence):
         self, grid: Grid, direction: float, *, source: Window | None = None, counter: Counter | None = None
     ) -> None:
         super().__init__(grid, direction, source=source, counter=counter)
-        self._coarse = CoarseGrid.under(self.source.shape)
+        self._coarse = CoarseGrid.under(self.source.shape, window, 1 - WIDTH // 2, WIDTH - 1)
         (n, m), (rows, columns) = self.source.shape, self._coarse.shape
         near = padded_length(n + REACH), padded_length(m + REACH)
         far = padded_length(2 * rows), padded_length(2 * columns)
@@ -134,54 +130,3 @@ class _PartCounter(Counter):
     def add(self, what: str, points: int) -> None:
         """See `Counter`."""
         self._whole.add(f"{self._name} {what}", points)
-
-
-class CoarseGrid(NamedTuple):
-    """Spreads elements to a coarse grid and interpolates from it, by small dense matrices, block by block.
-
-    shape : points of the coarse grid
-    blocks : of `_CELLS` cells along each axis; the last ones may be beyond the elements
-    weights : from the points that a block's elements see to those elements
-    """
-
-    shape: Shape
-    blocks: Shape
-    weights: Array
-
-    @classmethod
-    def under(cls, shape: Shape) -> CoarseGrid:
-        """The coarse grid for a window of this shape."""
-        n, m = (-(-k // (_CELLS * COARSER)) for k in shape)
-        elements = (np.arange(_CELLS * COARSER) + 0.5) / COARSER
-        points = np.arange(_CELLS + WIDTH - 1)[:, None] - (WIDTH // 2 - 1)
-        rows, columns = (k * _CELLS + WIDTH - 1 for k in (n, m))
-        return cls((rows, columns), (n, m), window(points - elements))
-
-    def spread(self, values: Array) -> Array:
-        """Sums of elements' values by the window about each point."""
-        (n, m), (rows, columns), width = self.blocks, self.shape, self.weights.shape[1]
-        if values.shape != (n * width, m * width):
-            values = np.pad(values, [(0, k * width - s) for k, s in zip((n, m), values.shape, strict=True)])
-        along = np.zeros((rows, m * width))
-        _add_blocks(along, self.weights @ values.reshape(n, width, -1))
-        found = np.zeros((columns, rows))
-        across = (along.reshape(-1, width) @ self.weights.T).reshape(rows, m, -1)
-        _add_blocks(found, across.transpose(1, 2, 0))
-        return found.T
-
-    def interpolate(self, values: Array, shape: Shape) -> Array:
-        """Values of points at the elements of a window."""
-        reach = len(self.weights)
-        blocks = sliding_window_view(values, reach, axis=1)[:, ::_CELLS]
-        along = (blocks.reshape(-1, reach) @ self.weights).reshape(self.shape[0], -1)
-        rows = sliding_window_view(along, reach, axis=0)[::_CELLS].transpose(0, 2, 1)
-        return (self.weights.T @ rows).reshape(-1, along.shape[1])[: shape[0], : shape[1]]
-
-
-def _add_blocks(total: Array, blocks: Array) -> None:
-    """Add blocks, each `_CELLS` rows further than the last, into a total."""
-    n, width, _ = blocks.shape
-    for first in range(0, width, _CELLS):
-        part = blocks[:, first : first + _CELLS]
-        for row in range(part.shape[1]):
-            total[first + row :: _CELLS][:n] += part[:, row]

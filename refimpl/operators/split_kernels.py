@@ -11,9 +11,9 @@ import numpy as np
 import scipy
 
 from refimpl.grid import Array, Shape, read_only
+from refimpl.operators.coarse_grid import COARSER
 from refimpl.operators.kernel_tables import unit_table
 
-COARSER = 4  # elements per spacing of the coarse grid
 SHAPE = 22.0  # beta of the bell
 RADIUS = 2 * COARSER * SHAPE / np.pi  # R: the band ends at half the coarse grid's highest frequency
 REACH = int(RADIUS)  # greatest offset at which the near part counts

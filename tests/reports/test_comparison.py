@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from reports.comparison import compared
 from reports.generator import render
+from reports.results import compared
 from tests.reports.sample import case, results
 
 LARGE: dict[str, Any] = {"reference": 2e6, "tolerance": 0.1}

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from datetime import UTC, datetime
 
-from reports.departures import departures
-from reports.evidence import gathered
+from reports.evidence import departures, gathered
 from reports.generator import render
 from tests.reports.sample import case, results
 

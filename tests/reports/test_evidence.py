@@ -8,10 +8,9 @@ import pytest
 
 from reports.agreement import SINGLE, TABLE3
 from reports.claims import NOT_ESTABLISHED, VERDICTS, judged, of_the_conversion, paper, parts
-from reports.evidence import gathered, groups
+from reports.evidence import gathered, groups, revisions_of
 from reports.findings import fields
 from reports.results import ResultFileError, check, worst
-from reports.revisions import revisions_of
 from tests.documents import ROOT
 from tests.reports.sample import ERRATUM, case, results
 from verification.framework.registry import load

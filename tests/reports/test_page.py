@@ -65,7 +65,7 @@ PHONE = 396
 
 @pytest.mark.slow
 def test_letters_of_figures_have_9_pixels_on_a_phone(html: str) -> None:
-    styles = dict(re.findall(r"^\.(s\d+)\{([^}]*)\}", html, flags=re.M))
+    styles = dict(re.findall(r"\.(s\d+)\{([^}]*)\}", html))
     figures = re.findall(r'<svg class="plot".*?</svg>', html, flags=re.S)
     for figure in figures:
         width = float(re.search(r'viewBox="0 0 ([\d.]+)', figure)[1])  # type: ignore[index]  # every one has it

@@ -8,10 +8,9 @@ from typing import Any
 
 import pytest
 
-from reports.evidence import gathered, groups
+from reports.evidence import gathered, groups, rerun
 from reports.generator import render
 from reports.results import ResultFileError, check
-from reports.solver_under_test import rerun
 from tests.reports.sample import case, results
 from tests.reports.test_generator import Page, summary_of
 from verification.cli import parser

@@ -33,8 +33,7 @@ OPTIONS: Options = {
 
 def run(options: argparse.Namespace) -> int:
     """Make the report and print its path; the exit status is about that, not about the verdicts in it."""
-    from reports.departures import departures
-    from reports.evidence import gathered
+    from reports.evidence import departures, gathered
     from reports.generator import render
     from reports.results import CaseDataError, ResultFileError
     from verification.output.files import write_text

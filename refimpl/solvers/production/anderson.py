@@ -18,6 +18,7 @@ from refimpl.solvers.production.constants import (
     DEPTH,
     DISTINCT,
     MIXING_SHARE,
+    NEAR_ROUNDING,
     PATIENCE,
     RESTART,
     STALLED,
@@ -96,7 +97,8 @@ class MixingControl:
         if residual < 0.5 * self._best:
             self._best, self._stalled = residual, 0
         self._strong = self._strong + 1 if feedback > STRONG_FEEDBACK else 0
-        starts = self._strong == STRONG_UPDATES or self._stalled == STALLED
+        stalled = self._stalled == STALLED and self._best > NEAR_ROUNDING
+        starts = self._strong == STRONG_UPDATES or stalled
         if self.mixing is None and self._has_lag and starts:
             self.mixing, self._stalled = AndersonMixing(), 0
         elif self.mixing and self._stalled and self._stalled % RESTART == 0:
@@ -105,4 +107,5 @@ class MixingControl:
     @property
     def stagnated(self) -> bool:
         """True if too many updates in a row have not halved the best residual."""
-        return self._stalled >= (PATIENCE if self.mixing else STALLED)
+        patient = self.mixing and self._best > NEAR_ROUNDING
+        return self._stalled >= (PATIENCE if patient else STALLED)

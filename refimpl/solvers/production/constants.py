@@ -26,6 +26,9 @@ PLAIN_SHARE = 0.9  # share of the tolerance, for CG where nothing lags: the rest
 MIXED_SHARE = 0.1  # share of the tolerance, for CG between mixed updates: its residual is noise to the mixing
 CG_LIMIT = 1000  # CG steps of one solve; the extreme scenes that converge take 108 at most
 CG_PATIENCE = 40  # CG steps without a tenth's progress before the residual counts as stagnant
+NEAR_ROUNDING = 1e-12  # residual below which steps or updates without progress are rounding, whose floor is
+#                        1e-15 to 3e-14 on Table 1's ball, 32 to 512 elements per side
+ROUNDING_PATIENCE = 8  # CG steps without a tenth's progress there: at 1e-16 100 CG steps in place of 1000
 UPDATE_LIMIT = 600  # updates of the lagged terms in one solve; the extreme scenes take 59 at most
 
 # Projected CG (`projected_cg`, `step_length`, `contact_vectors`)

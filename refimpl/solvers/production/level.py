@@ -196,7 +196,7 @@ class LevelSolver:
         """CG steps until the fixed problem's residual, returned, meets the goal or stagnates."""
         residual = best = max(self.cg.residuals())
         since = 0
-        while residual > goal and since < constants.CG_PATIENCE and self.cg_iterations < self._budget:
+        while residual > goal and since < _patience(best) and self.cg_iterations < self._budget:
             # between mixed updates the state solves no problem of its own: its contact is not the rule's
             own = self.lagged.active.is_fixed and not self.needs_mixing
             if own and self._contact_suffices():
@@ -225,3 +225,8 @@ class LevelSolver:
     def full(self, values: NDArray[Any]) -> NDArray[Any]:
         """Return a window's array on the whole grid."""
         return self.window.spread(values, self.whole.grid.shape)
+
+
+def _patience(residual: float) -> int:
+    """CG steps without progress that are allowed; few where only rounding is left."""
+    return constants.CG_PATIENCE if residual > constants.NEAR_ROUNDING else constants.ROUNDING_PATIENCE

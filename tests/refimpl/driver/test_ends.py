@@ -178,3 +178,11 @@ def test_threads_do_not_mix_the_notes_of_surfaces() -> None:
     assert list(warnings.filters) == before
     for k, lines in found.items():
         assert sum("finer than the array" in line for line in lines) == k % 2
+
+
+def test_a_tolerance_below_rounding_ends_at_the_floor_after_few_steps() -> None:
+    """CG took 1009 steps there, its limit; 103 steps now."""
+    found = rf.solve(rf.read_scene("table1-smooth"), 64, tolerance=1e-16)
+    assert found.status is rf.Status.STAGNATED
+    assert found.certificate.largest < 1e-13
+    assert sum(found.cost.iterations.values()) < 200

@@ -233,3 +233,10 @@ def test_small_windows_do_without() -> None:
     assert extended(mask, np.zeros((19, 421), dtype=bool)) is mask  # 7,999 elements
     assert isinstance(extended(mask, np.zeros((80, 100), dtype=bool)), ExtendedPreconditioner)
     assert extended(mask, np.zeros((127, 63), dtype=bool)) is not mask  # 8,001
+
+
+def test_means_fill_between_scattered_contact_and_keep_the_map_symmetric() -> None:
+    contact = np.random.default_rng(4).random((320, 330)) < 0.05
+    apply = ExtendedPreconditioner(spectral(on(320, 330)), contact)
+    a, b = (contact * field for field in np.random.default_rng(6).standard_normal((2, 320, 330)))
+    assert np.vdot(b, apply(a)) == pytest.approx(np.vdot(a, apply(b)), abs=1e-6 * np.vdot(a, apply(a)))
