@@ -11,7 +11,7 @@ from tests.documents import ROOT
 from verification.output.result_files import FOLDER, SUFFIX, name_of, result_paths
 
 MOST_BYTES = 500_000  # of a file
-MOST_BYTES_IN_ALL = 6_000_000
+MOST_BYTES_IN_ALL = 6_500_000
 
 
 @pytest.fixture(scope="module")

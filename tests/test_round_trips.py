@@ -159,6 +159,7 @@ def test_a_study_has_all_that_its_table_states() -> None:
         "settings": {"method": "dense", "oblique": False, "tolerance": 1e-6},
         "files": (Path("table1-rough"),),
         "notes": (),
+        "unusable": {},
     }
     assert set(expected) == {field.name for field in fields(Study)}
     assert {name: getattr(study, name) for name in expected} == expected
