@@ -33,7 +33,7 @@ def edge_faces(pressure: Array, clearance: Array, grid: Grid) -> tuple[float, ..
 
     >>> pressure, gap = np.array([[0.0, 0.0, 0.2, 1.0, 1.0]]), np.array([[4.0, 1.0, 0.0, 0.0, 0.0]])
     >>> found = np.reshape(edge_faces(pressure, gap, Grid((1, 5), (1.0, 5.0))), KINDS)
-    >>> round(found.sum(), 12), (found[0] @ GAPS).sum() / found[0].sum()  # gaps have the ratio 1/4
+    >>> round(float(found.sum()), 12), float((found[0] @ GAPS).sum() / found[0].sum())  # gaps go as 1/4
     (1.0, 0.25)
     """
     box = grid.window_around(pressure > 0, margin=2).slices

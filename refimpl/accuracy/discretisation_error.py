@@ -53,7 +53,7 @@ from refimpl.grid import Array
 
 _DIVERGED = 1e100  # in SI units; squares are still doubles
 
-_UNMEASURED = 4.5  # elements of a contact
+_UNMEASURED = constant("unmeasured_elements")
 EXCESS_SPREAD = constant("excess_spread")  # standard deviation of all faces' excess together, over it
 AREA = Prior(1.0, constant("area_freedom"))  # unit: `area_scatter`
 # c0, s_c: the parabola of a pressure peaks too high, over its curvature drop
@@ -275,4 +275,4 @@ def _area(grids: _Grids) -> Estimate:
     scatter = grids.each(area_scatter)[None]
     found = grids.smooth(grids.found("contact_area"), AREA.weight, np.ones(1), scatter, bias)
     area, dA = grids.finest("contact_area"), grids.results[-1].grid.element_area
-    return found.widened(area) if area < _UNMEASURED * dA else found
+    return found.widened(area) if area < (_UNMEASURED + 0.5) * dA else found

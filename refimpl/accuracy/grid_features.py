@@ -26,7 +26,7 @@ EXCESS = np.array(
 )
 """Elements by which a counted area exceeds, of each of `GridFeatures.excess_terms`."""
 _LEVELS = 16  # pressures in `highest_areas`
-_TROUGH_ERROR = 0.05  # error of a parabola's trough over its second differences, where no gap was missed
+_TROUGH_ERROR = constant("trough_error")
 
 
 @dataclass(frozen=True)

@@ -14,16 +14,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from refimpl.accuracy.constants import constant
 from refimpl.grid import Array, Grid, Mask
 
-_RIVAL = 0.5  # share of the highest element: lower maxima do not count for how well the peak is resolved
+_RIVAL, _CREST_RIVAL = constant("peak_rival"), constant("crest_rival")  # shares of the highest element
 _REACH = 2  # elements on either side of a maximum that fourth differences need
 _FAR = 5  # elements on either side of a maximum that sixth differences beside it need
-_CREST_RIVAL = 0.8  # share of the highest element: on finer grids lower maxima on a crest may exceed it
 # sixth over fourth differences of a kink: 2.5 to 3, wherever it lies between elements; of a wave of number q
 # 4 sin(q h / 2)^2, so that waves of more than 3.5 elements are none
 _KINK_RATIO = 2.45, 3.05
-_LEAST_KINK = 0.1  # fourth over three second differences, from which a kink shapes the peak
+_LEAST_KINK = constant("least_kink")
+_ERROR_POWER = constant("peak_error_power")
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ class Peak:
         >>> [round(Peak(1.0, 1.0, q).error_factor, 1) for q in (0.0, 0.5, 0.8, 1.0)]
         [1.0, 3.2, 59.5, inf]
         """
-        resolved = (1 - self.non_parabolicity**2) ** 4
+        resolved = (1 - self.non_parabolicity**2) ** _ERROR_POWER
         return 1 / resolved if resolved > 0 else math.inf
 
     def widened(self, size: float, power: float = 1.0) -> float:

@@ -17,12 +17,12 @@ from refimpl.model.forces import EDGE_SHARE
 
 STRAIGHT_SCATTER = constant("straight_scatter")  # standard deviation of a straight edge over a step
 _LEAST_SHARE = 1e-6  # in place of zero
-_LEAST_RESOLVED = 0.2  # share of gaps that are not single elements: a mean gap errs by no more
-_SLOPES = 2  # power of the share that is not single elements, which divides the scatter of slopes
-_ALONE = 5.5  # power of the share of single elements: patches of 2 x 2 have bars of all their area
+_LEAST_RESOLVED = constant("gap_least_resolved")
+_SLOPES = constant("slope_single_power")
+_ALONE = constant("area_single_power")
 _RISING, _NARROW = 4, 5  # first kinds of faces to which pressures do not fall, beyond which gaps do not rise
 AREA_SCATTER = table("area_scatter")  # elements, of each of `area_counts`
-_GAP_STRAIGHT = 3.5  # scatter of a gap's straight edges, over an area's
+_GAP_STRAIGHT = constant("gap_straight_scatter")
 PLASTIC_LACK = constant("plastic_lack")  # area that yields in part, over that of the edge
 PLASTIC_SCATTER = table("plastic_scatter")  # scatter at each of `plastic_sizes`
 PLASTIC_FREEDOM = constant("plastic_freedom")  # weight of the prior

@@ -21,9 +21,9 @@ BY_SERIES: dict[str, Column] = {
     "judged by": "oracle",
 }
 LIMITS: dict[str, Column] = {
+    "kind": lambda row: row.get("kind"),  # older result files have none
     "what happens": "what",
     "why": "why",
-    "what would help": "remedy",
     "states": "states",
 }
 LAWFUL: dict[str, Column] = {

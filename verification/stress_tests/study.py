@@ -13,7 +13,7 @@ from verification.framework.case import jsonable
 from verification.output.provenance import provenance
 from verification.stress_tests import conditioning, precision, uniqueness
 from verification.stress_tests.axes import AXES, states
-from verification.stress_tests.limits import LIMITS
+from verification.stress_tests.limits import LIMITS, limit_of
 from verification.stress_tests.state import Extreme, Verdict
 
 FORMAT = "rough-friction extremes, version 1"
@@ -35,8 +35,15 @@ def run_state(unique: str, extreme: Extreme) -> Row:
         "id": unique, "axis": unique.split("/")[0],
         "series": extreme.series, "at": extreme.at, "x": extreme.x,
         **asdict(found), "verdict": found.verdict.value, "digits": found.digits,
+        "kind": kind_of(unique, found.verdict),
         "seconds": round(time.process_time() - started, 3),
     }  # fmt: skip
+
+
+def kind_of(unique: str, verdict: Verdict) -> str | None:
+    """Return what stands behind a state that is not solved; None for the others."""
+    limit = None if verdict is Verdict.RIGHT else limit_of(unique)
+    return None if limit is None else limit.kind.value
 
 
 def run(names: Iterable[str] = (), tick: Callable[[str], None] = lambda _: None) -> list[Row]:
@@ -83,6 +90,7 @@ def document(rows: list[Row]) -> dict[str, Any]:
             "counts": counts(rows),
             "table": summary(rows),
             "limits": [limit._asdict() for limit in LIMITS],
+            "not solved": Counter(row["kind"] for row in rows if row["kind"] is not None),
             "states": rows,
             "precision": precision.table(),
             "conditioning": conditioning.table(),

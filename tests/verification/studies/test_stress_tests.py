@@ -237,3 +237,19 @@ def test_the_committed_study_has_no_wrong_number() -> None:
     found = committed("extremes")
     assert len(found["states"]) >= 400
     assert found["counts"]["wrong"] == 0
+
+
+@pytest.mark.parametrize(
+    ("unique", "kind"),
+    [
+        ("load/plane, fft/p/E* = 1e+01", "BEYOND"),
+        ("friction/tau, soft ball, dense/tau/f = 100", "NONE_FOUND"),
+        ("friction/tau without slopes, dense/tau/f = 100", "EXCLUDED"),
+        ("wedge/r = 1/gamma = 1.5707963267948966", "NO_PROBLEM"),
+        ("wedge/r = 1/gamma = 1.5707963257948965", "MISSED"),
+    ],
+)
+def test_a_state_that_is_not_solved_has_a_kind(unique: str, kind: str) -> None:
+    assert unique in ALL
+    assert study.kind_of(unique, Verdict.DETECTED) == limits.Kind[kind].value
+    assert study.kind_of(unique, Verdict.RIGHT) is None
