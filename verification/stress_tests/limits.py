@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 
 class Kind(StrEnum):
-    """What stands behind a state that is not solved."""
+    """Return what stands behind a state that is not solved."""
 
     NO_PROBLEM = "no such problem, or no digits"
     EXCLUDED = "only a state with more than half of the contact without tau"
