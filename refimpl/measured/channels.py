@@ -15,6 +15,7 @@ from refimpl.measured.reading import MAX_POINTS, Overrides
 
 ARRAYS = ("npz", "mat", "h5")  # formats whose arrays may be anything
 HEIGHTS = ("z", "h", "height", "heights", "topography", "surface")
+NAMES_SHOWN, NAME_SHOWN = 20, 40  # channels in a message, and characters of each
 
 
 def choose(path: Path, form: str, reader: Any, given: Overrides) -> tuple[int, Any]:
@@ -54,7 +55,10 @@ def chosen(path: Path, names: list[str], channel: str | int | None) -> int:
 
 
 def _listed(names: list[str]) -> str:
-    return ", ".join(f"{k} {name!r}" for k, name in enumerate(names))
+    """Numbers and names, as many and as much of each as a line of a message holds."""
+    shown = [f"{k} {name[:NAME_SHOWN]!r}" for k, name in enumerate(names[:NAMES_SHOWN])]
+    more = len(names) - len(shown)
+    return ", ".join([*shown, f"and {more} more"] if more else shown)
 
 
 def _maps(channels: list[Any], reader: Any, arrays: bool) -> list[int]:

@@ -19,7 +19,7 @@ from typing import Any, TypeVar
 import numpy as np
 import scipy
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, printable
 from refimpl.measured.channels import (
     ARRAYS,
     choose,
@@ -225,4 +225,4 @@ def corrupt(library: ModuleType) -> tuple[type[Exception], ...]:
 def first_line(error: object) -> str:
     """One line of an error or a warning: its kind and its own words."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()] or [""]
-    return f"{type(error).__name__}: {lines[0][:160]}"
+    return f"{type(error).__name__}: {printable(lines[0])[:160]}"

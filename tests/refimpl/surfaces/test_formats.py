@@ -422,3 +422,12 @@ def test_a_file_of_another_kind_is_named_with_the_remedy(
         path.write_bytes(content)
     with pytest.raises(InputError, match=rf"expected a map of heights: this is an? {kind}.*; .*{remedy}"):
         MeasuredSurface(path, unit="um", pixel_size=1e-6).reading  # noqa: B018  # reading is what raises
+
+
+def test_a_refusal_lists_no_more_channels_than_a_line_holds(tmp_path: Path) -> None:
+    """300 arrays of long names make no message of 30,000 characters."""
+    path = tmp_path / "many.npz"
+    np.savez(path, **{f"{k:03}{'x' * 100}": np.eye(5) for k in range(300)})
+    with pytest.raises(InputError, match="and 280 more") as refused:
+        read(path, **BOTH)
+    assert len(str(refused.value)) < 1500
