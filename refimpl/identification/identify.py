@@ -157,10 +157,10 @@ def _fitted(
 
 def _of_row(refused: InputError, rows: Sequence[Row]) -> InputError:
     """The refusal of a load, which names the row; any other unchanged."""
-    row = next((k for k, one in enumerate(rows, 1) if refused.field == "load" and one.load == refused.value), 0)
-    if not row:
+    found = [k for k, row in enumerate(rows, 1) if row.load == refused.value]
+    if refused.field != "load" or not found:
         return refused
-    return InputError(f"data: load of row {row}", refused.value, f"N (mN, kN mixed?), {refused.allowed}")
+    return InputError(f"data: load of row {found[0]}", refused.value, f"N (mN, kN mixed?), {refused.allowed}")
 
 
 def _proposal(

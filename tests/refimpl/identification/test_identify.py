@@ -326,7 +326,8 @@ def test_loads_in_another_unit_do_not_belong_to_the_scene(smooth: rf.Scene, fact
 def test_a_load_above_what_the_softer_body_bears_is_named_by_its_row(smooth: rf.Scene) -> None:
     rows = [replace(row, load=load) for row in _rows(smooth, 0.01, (20.0, 40.0)) for load in (20.0, 4000.0)]
     soft = replace(smooth, lower=rf.Body(rf.Material(118e9, 0.3, hardness=0.8e9), smooth.lower.surface))
-    with pytest.raises(rf.InputError, match=r"load of row 2 = 4000.0: expected N \(mN, kN mixed\?\), at most"):
+    said = r"load of row 2 = 4000.0: expected N \(mN, kN mixed\?\), at most"
+    with pytest.raises(rf.InputError, match=said):
         identify(soft, rows, M, design=False)
 
 
