@@ -16,7 +16,7 @@ from verification.cases.appendix_a import half_space
 from verification.output import result_files
 
 EXAMPLES = {
-    "first_result": (["64"], "mu = 0.1189 +- 0.0019, A = ... mm^2, p_max = 0.800 GPa (converged)"),
+    "first_result": (["64"], "mu = 0.1195 +- 0.0024, A = ... mm^2, p_max = 0.800 GPa (converged)"),
     "hertz": (["32"], "converged: peak 165.79 MPa, -2.9e-03 of Hertz' 166.27"),
     "rough_friction": (["0.05"], "converged on 64 x 64\nmu = 0.1366 +- 0.0015\nA  = 0.2313 +- ... mm^2"),
     "check_my_solver": (["solver/pins"], "pass solver/pins ... of 2.0e+00"),

@@ -42,7 +42,7 @@ class BlockMeans:
         return self._grid.interpolate(np.pad(found, 1), self._shape)
 
     def transposed(self, field: Array) -> Array:
-        """What `continued` would take from each element, added up over a field on the window."""
+        """Return the sum over a field on the window of what `continued` would take from each element."""
         left = self._grid.spread(field)[1:-1, 1:-1]
         parts = []
         for weights, rest in zip(self._weights, self._rests, strict=True):

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 
 class Kind(StrEnum):
-    """What stands behind a state that is not solved."""
+    """Kind of a state that is not solved: what stands behind it."""
 
     NO_PROBLEM = "no such problem, or no digits"
     EXCLUDED = "only a state with more than half of the contact without tau"

@@ -100,7 +100,7 @@ def test_a_part_without_a_rule_leaves_the_number_without_a_bar() -> None:
     own = dict(solution.uncertainty["contact_area"], discretisation=None)
     found = changed(solution, uncertainty={**solution.uncertainty, "contact_area": own})
     without = {name for name in QUANTITIES if found.error(name) is None}
-    assert without == {"contact_area", "contact_area_share", "mean_pressure"}
+    assert without == {"contact_area", "contact_area_share", "mean_pressure", "elastic_friction"}  # the last: never
     assert "contact_area_error" not in attributes_of(found)
     assert " - " in next(row for row in str(found).splitlines() if "contact area A" in row)
 
@@ -151,9 +151,10 @@ def test_mean_pressure_of_a_ball_is_within_its_bar() -> None:
     assert abs(found.mean_pressure - exact) <= error <= 0.05 * exact
 
 
-def test_at_most_35_names_are_public() -> None:
+def test_at_most_36_names_are_public() -> None:
+    """35, and the part of F that the slopes bear."""
     names = {name for name in dir(rf.solve(HERTZ, 8)) if not name.startswith("_")}
-    assert len(names) <= 35
+    assert len(names) <= 36
     assert Solution.__doc__ is not None
     assert [name for name in names if name not in Solution.__doc__] == []
 

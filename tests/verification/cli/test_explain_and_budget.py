@@ -113,7 +113,7 @@ def test_a_term_has_its_changes_of_mu_and_of_the_area_in_this_order() -> None:
 
 def test_missing_slopes_fall_with_the_square_of_the_elements(monkeypatch: pytest.MonkeyPatch) -> None:
     """A length of 3 and five elements: 9 / 8 / 25 = 0.045 of the rms slope."""
-    detail = Detail("correlation length", 1e-4, 4.0, 3.0, "")
+    detail = Detail("correlation length", 1e-4, 4.0, 3.0, 0.1, 0.0, "")
     monkeypatch.setattr(explain, "resolution", lambda *_: Resolution(detail, 5.0, 48.0))
     printed = shown("solve table1-smooth --grid 16 --explain")
     assert "5: rms slopes are seen 4.5e-02 too small" in printed
