@@ -160,7 +160,10 @@ def _row(
     header: Sequence[str], quantity: str, k: int, cells: Sequence[str], folder: Path, decimal: str
 ) -> Row:
     if len(cells) != len(header):
-        raise InputError(f"data line {k}", ",".join(cells), f"{len(header)} cells, as many as columns")
+        allowed = f"{len(header)} cells, as many as columns"
+        if decimal == "." and len(cells) > len(header):
+            allowed += " (decimal commas need ; between the columns)"
+        raise InputError(f"data line {k}", ",".join(cells), allowed)
     found = dict(zip(header, cells, strict=True))
     numbers = {
         name: _number(k, name, text.replace(decimal, "."))
@@ -228,7 +231,8 @@ def check_rows(rows: Sequence[Row], unknowns: int = 2) -> tuple[Row, ...]:
     _refuse_mixed_loads(rows)
     mus = sorted(row.mu for row in rows if row.mu > 0)
     if mus and mus[-1] > MIXED_FRICTION * mus[0]:
-        raise InputError("data: mu", f"{mus[0]:.3g} to {mus[-1]:.3g}", "forces in N alone (N and kN mixed?)")
+        allowed = "forces in N alone (N and kN mixed?), mu as a number under mu (per cent?)"
+        raise InputError("data: mu", f"{mus[0]:.3g} to {mus[-1]:.3g}", allowed)
     if mus and median(mus) > MOST_FRICTION:
         raise InputError(
             "data: mu",
@@ -238,5 +242,6 @@ def check_rows(rows: Sequence[Row], unknowns: int = 2) -> tuple[Row, ...]:
     _refuse_swapped(rows)
     if all(row.u_mu > row.mu for row in rows):
         least = min(row.u_mu for row in rows)
-        raise InputError("data: u_mu", f"{least:.3g} or more", "uncertainties below mu itself (in per cent?)")
+        allowed = "uncertainties below mu itself (in per cent? columns swapped?)"
+        raise InputError("data: u_mu", f"{least:.3g} or more", allowed)
     return tuple(rows)

@@ -144,12 +144,23 @@ def _fitted(
     """The fit, and the covariance by source."""
     logarithms = [math.log(parameters(scene)[name]) for name in forward.further]
     start, scenes = np.concatenate([_start(scene, rows), logarithms]), [row.of(scene) for row in rows]
-    fitted = fit_rows(rows, scenes, forward, start, realisations)
+    try:
+        fitted = fit_rows(rows, scenes, forward, start, realisations)
+    except InputError as refused:
+        raise _of_row(refused, rows) from refused
     inputs = []
     if tolerances:
         toleranced = (draws(forward, one, fitted.theta, realisations, tolerances) for one in scenes)
         inputs = [mean_response(drawn).inputs for drawn in toleranced]
     return fitted, shares(rows, fitted, inputs)
+
+
+def _of_row(refused: InputError, rows: Sequence[Row]) -> InputError:
+    """The refusal of a load, which names the row; any other unchanged."""
+    found = [k for k, row in enumerate(rows, 1) if row.load == refused.value]
+    if refused.field != "load" or not found:
+        return refused
+    return InputError(f"data: load of row {found[0]}", refused.value, f"N (mN, kN mixed?), {refused.allowed}")
 
 
 def _proposal(

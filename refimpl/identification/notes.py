@@ -62,7 +62,7 @@ def _determined(result: Identification) -> Iterator[str]:
         f"the data determine {result.factor:.3g}/Pa tau + beta = {combination.value:.4g} "
         f"({combination.low:.4g} to {combination.high:.4g})"
     )
-    if result.proposal is not None:
+    if result.proposal is not None and result.proposal.widths[0] < tau.relative:
         loads = " and ".join(f"{load:.3g} N" for load in result.proposal.loads)
         text += f"; measure at {loads}: tau's interval falls to +-{100 * result.proposal.widths[0]:.0f} %"
     yield text + "; a curved surface changes A/P more than flat rough planes do"

@@ -36,8 +36,8 @@ def on_grid(path: Path, points: Array) -> tuple[Array, tuple[float, float]]:
     i, j = indices
     shape = int(i.max()) + 1, int(j.max()) + 1
     if shape[0] * shape[1] > 25 * len(z) + 1000:
-        what = f"points on a regular grid ({len(z)} points would fill {shape[0]} x {shape[1]} places)"
-        raise InputError("path", str(path), what)
+        found = f"{len(z)} points would fill {shape[0]} x {shape[1]} places; are the columns x, y, z?"
+        raise InputError("path", str(path), f"points on a regular grid ({found})")
     heights = np.full(shape, np.nan)
     heights[i, j] = z
     twice = len(z) - len(np.unique(i * shape[1] + j))

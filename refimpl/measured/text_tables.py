@@ -106,6 +106,7 @@ def read_table(path: Path) -> TextTable:
     return TextTable(rows, header, (*notes, *labels), tuple(comments))
 
 
+_SHORT = "lines with fewer entries than the first row: {}, from line {} on; is the file cut off?"
 _EMPTY = "the {} column, empty in all lines, was dropped"
 
 
@@ -226,13 +227,14 @@ def _numbers(
     path: Path, layout: _Layout, lines: Iterator[tuple[int, str]], width: int
 ) -> tuple[Array, list[str]]:
     """The numbers of all lines, each of ``width`` entries, and notes. Raises InputError with the line."""
-    values, decimals, filled = array("d"), set[str](), [False, False]
+    values, decimals, filled, short = array("d"), set[str](), [False, False], list[int]()
     for number, line in lines:
         if layout.separator != ",":
             decimals |= {mark for mark in ".," if mark in line}
             line = line.replace(",", ".")
         cells = layout.cells(line)
-        if layout.separator is not None:
+        if layout.separator is not None and len(cells) < width:
+            short.append(number)
             cells += [""] * (width - len(cells))
         if len(cells) != width or len(decimals) > 1:
             found = f"line {number} has {len(cells)}, the first row {width}"
@@ -247,6 +249,8 @@ def _numbers(
             raise InputError("path", str(path), allowed) from None
         filled = [filled[0] or cells[0] != "", filled[1] or cells[-1] != ""]
     notes = [f"separator {layout.name}, decimal comma"] if "," in decimals else []
+    if short:
+        notes.append(_SHORT.format(len(short), short[0]))
     rows = np.frombuffer(values).reshape(-1, width)
     for k, side in ((1, "last"), (0, "first")):
         if layout.separator is not None and not filled[k]:

@@ -19,7 +19,7 @@ from refimpl.surfaces import GaussianRoughness, SelfAffineRoughness, Sphere
 MODULI = (1e6, 2e12)  # Pa: from soft gels to twice diamond
 _STRONG = 10.0  # tau over the mean contact pressure
 _WEAK = 1e-3  # tau's share of mu
-_MEGAPASCALS = 1e3  # Pa: strengths that are typed in MPa are numbers below this
+_FULL_TURN = 6.2832  # rad: 2 pi, rounded up
 _SOFTER = 5.0  # E over the hardness: 20 to 500 of metals, 10 to 20 of ceramics, 6 to 10 of hard carbon
 _INDEX = 1e3  # plasticity index
 _LENGTHS = ("correlation_length", "short_cut")  # roughness of longer ones is a smooth surface on the domain
@@ -47,10 +47,15 @@ def implausible(scene: Scene, plan: Plan) -> Iterator[str]:
             "pressure to be expected: did you mean MPa (15 MPa is 15e6)?"
         )
     expected = friction_coefficient_at(scene.friction, mean) * mean if mean > 0 else 0.0
-    if 0 < scene.friction.jump < min(_WEAK * expected, _MEGAPASCALS):
+    if 0 < scene.friction.jump < _WEAK * expected:
         yield (
             f"tau, {scene.friction.jump:.4g} Pa, is less than {_WEAK:.1%} of the friction to be expected: "
             "did you mean MPa (60 MPa is 60e6)?"
+        )
+    if abs(scene.sliding_direction) > _FULL_TURN:
+        yield (
+            f"sliding_direction, {scene.sliding_direction:.4g} rad, is beyond a full turn: did you mean "
+            "degrees (45 degrees are 0.785 rad)?"
         )
     yield from _index(scene, plan)
 

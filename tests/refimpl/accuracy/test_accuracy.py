@@ -236,6 +236,8 @@ def test_contact_that_fills_the_window_has_no_error_bar() -> None:
     [
         ({"lower": rf.Body(rf.Material(E=200.0, nu=0.3), rf.Flat()), "load": 1e-3}, "did you mean GPa"),
         ({"friction": rf.Friction(tau=15e9, beta=0.08)}, "did you mean MPa"),
+        ({"friction": rf.Friction(tau=5e3, beta=0.08)}, "did you mean MPa"),
+        ({"sliding_direction": 45.0}, "did you mean degrees"),
     ],
 )
 def test_inputs_that_are_seldom_meant_get_a_note_with_help(change: dict[str, object], said: str) -> None:

@@ -323,6 +323,14 @@ def test_loads_in_another_unit_do_not_belong_to_the_scene(smooth: rf.Scene, fact
     assert said in identify(_without_friction(smooth), rows, M, design=False).warnings[0]
 
 
+def test_a_load_above_what_the_softer_body_bears_is_named_by_its_row(smooth: rf.Scene) -> None:
+    rows = [replace(row, load=load) for row in _rows(smooth, 0.01, (20.0, 40.0)) for load in (20.0, 4000.0)]
+    soft = replace(smooth, lower=rf.Body(rf.Material(118e9, 0.3, hardness=0.8e9), smooth.lower.surface))
+    said = r"load of row 2 = 4000.0: expected N \(mN, kN mixed\?\), at most"
+    with pytest.raises(rf.InputError, match=said):
+        identify(soft, rows, M, design=False)
+
+
 def test_a_load_that_the_grid_does_not_resolve_is_named(smooth: rf.Scene) -> None:
     """40 N given as 0.04: a contact of few elements has hardly any weight."""
     rows = _rows(smooth, 0.01)

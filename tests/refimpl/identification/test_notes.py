@@ -91,6 +91,10 @@ SAID: list[tuple[dict[str, Any], str]] = [
         "to 0.25); measure at 0.4 N and 150 N: tau's interval falls to +-13 %; a curved surface",
     ),
     (
+        tau(1, 0, 9) | {"proposal": Proposal((0.4, 150.0), (9.0, 0.3))},
+        "to 0.25); a curved surface",
+    ),
+    (
         tau(9, 9, 9, beta=Interval(0, 0, 1), h=Interval(2e8, 1e8, 5e8)),
         "h is hardly determined (95 % interval 1e+",
     ),

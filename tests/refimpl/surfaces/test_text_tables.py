@@ -230,6 +230,16 @@ def test_labels_and_what_stands_above_a_table(
         read_table(tmp_path / "a.csv")
 
 
+def test_a_line_that_is_cut_off_gets_a_note(tmp_path: Path) -> None:
+    z = np.random.default_rng(3).normal(size=(6, 5))
+    np.savetxt(tmp_path / "whole.csv", z, fmt="%.3f", delimiter=";")
+    assert read_table(tmp_path / "whole.csv").notes == ()
+    lines = (tmp_path / "whole.csv").read_text().splitlines()
+    (tmp_path / "cut.csv").write_text("\n".join([*lines[:4], "0.1;0.2"]))
+    (note,) = read_table(tmp_path / "cut.csv").notes
+    assert note == "lines with fewer entries than the first row: 1, from line 5 on; is the file cut off?"
+
+
 @pytest.mark.parametrize("side", ["first row", "first column"])
 def test_uneven_coordinates_alone_are_refused(tmp_path: Path, side: str) -> None:
     """Ten of them or more that rise steadily, beside heights that do not."""
