@@ -15,7 +15,7 @@ from verification.cases import Measured, case
 
 SIDE, SOFT = 1e-3, 1e9  # m; Pa, the more compliant body's modulus
 FINER = 4  # times the elements per side of the reference
-ORDER = {"approach": 1.5, "normal_force": 1.0, "max_pressure": 1.0}  # at least; errors fall with its power of FINER
+ORDER = {"approach": 1.5, "normal_force": 1.0, "max_pressure": 1.0}  # errors fall by these powers at least
 SCENES = 100  # scenes of each kind
 HELD = 0.92  # share of scenes; what a perfect bar of 95 % passes with 94 % probability
 SOURCE = "finer grids; Eqs (3) and (5): Cerruti's part of the gap"
@@ -32,8 +32,9 @@ def off(scene: rf.Scene, M: int, approach: float | None = None) -> dict[str, flo
     """Errors over their bars of the approach, or of N and p_max at an approach (m).
 
     Errors are 4/3 of differences from a finer grid, of an approach 8/7: that much the finer grid may be off
-    itself, where errors fall with the element only, or its power 3/2. (Approaches fall with its square: of eight
-    balls on 32 and 48 elements, grids 4 times finer see 0.94 to 0.97 of what those 8 times finer see.)
+    itself, where errors fall with the element only, or its power 3/2. (Errors of approaches fall with its
+    square: of eight balls on 32 and 48 elements, grids 4 times finer see 0.94 to 0.97 of what those 8 times
+    finer see.)
     """
     found, finer = (rf.solve(scene, grid=grid, approach=approach) for grid in (M, FINER * M))
     if not (found.converged and finer.converged):
