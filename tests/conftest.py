@@ -27,7 +27,7 @@ hypothesis.settings.load_profile("unhurried")
 # that small, and compared to nothing. A number that should be zero states its own tolerance, by ``abs``.
 ApproxScalar.DEFAULT_ABSOLUTE_TOLERANCE = 0.0
 
-PACKAGES = ("refimpl", "appendix_a", "verification", "reports", "output")
+PACKAGES = ("refimpl", "appendix_a", "verification", "reports")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -18,7 +18,7 @@ import pytest
 from tests.layers import ROOT
 from tests.prose import paragraphs, plain, too_long, visible
 
-PACKAGES = ("refimpl", "appendix_a", "verification", "reports", "output")
+PACKAGES = ("refimpl", "appendix_a", "verification", "reports")
 LANGUAGE = tomllib.loads((ROOT / "tests/language.toml").read_text(encoding="utf-8"))
 PATTERNS, WORDS = LANGUAGE["pattern"], LANGUAGE["names"]
 FILES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))

@@ -19,7 +19,7 @@ from tests.documents import ROOT
 from tests.refimpl.surfaces.measured import ROUGH, write_x3p
 from tests.verification.cli.commands import SCENE, STUDY, refused
 
-PACKAGES = ("refimpl", "appendix_a", "verification", "reports", "output", "examples")
+PACKAGES = ("refimpl", "appendix_a", "verification", "reports", "examples")
 
 # Imported by every Python that the test starts, workers and readers among them. Two libraries that ask other
 # systems in other ways keep what they read on Linux.

@@ -269,7 +269,7 @@ def discretisation(results: Sequence[GridFeatures]) -> dict[str, dict[str, float
 def _area(grids: _Grids) -> Estimate:
     """Contact area: the excess along the edge is a regressor, and the scatter is that of a count.
 
-    Of a contact of four elements or fewer no face tells how much of them is in contact: its bar is all of it.
+    In a contact of at most four elements the faces do not locate the edge: the error bar is the whole area.
     """
     bias = Bias(grids.each(lambda result: result.excess), 1.0, EXCESS_SPREAD)
     scatter = grids.each(area_scatter)[None]

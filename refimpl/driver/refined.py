@@ -32,7 +32,7 @@ from refimpl.scene.discretise import Discretiser
 from refimpl.solution.cost import Cost, total_cost
 from refimpl.solution.data_error import data_error, finest_by_data
 from refimpl.solution.evidence import Evidence
-from refimpl.solution.limits import Notice
+from refimpl.solution.model_warning import Notice
 from refimpl.solution.solution import Solution, assemble
 
 _CONVERGED = (Status.CONVERGED, Status.CYCLED)

@@ -117,12 +117,12 @@ class FFTInfluence:
 
     @property
     def _is_even(self) -> bool:
-        """Whether the circles hold the opposite of every offset, but for that opposite 0."""
+        """True if a circle contains both signs of every offset; the offset halfway around has one."""
         return all(map(_is_even, self._offsets))
 
     @property
     def _is_odd(self) -> bool:
-        """Whether offsets opposite 0 do not count besides."""
+        """True if the product does not use the offset halfway around a circle."""
         (N, K), (rows, columns) = self._padded, _farthest(self.source, self.target)
         return self._is_even and rows < N // 2 and columns < K // 2
 

@@ -50,7 +50,7 @@ def far_quarter(kind: str, shape: Shape) -> Array:
 
 @cache
 def _near(kind: str) -> Array:
-    """What the far part's mean over an element leaves of the kernel, up to the reach."""
+    """Return the near part: the kernel less the mean of its far part over an element, within the reach."""
     points, weights = np.polynomial.legendre.leggauss(_GAUSS)
     offsets = np.arange(float(REACH + 1))
     at = (offsets[:, None] + points / 2).ravel()

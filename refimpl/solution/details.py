@@ -22,7 +22,7 @@ from refimpl.planning.plan import Plan
 from refimpl.planning.term_effects import Effect
 from refimpl.solution.cost import Cost
 from refimpl.solution.evidence import Evidence
-from refimpl.solution.limits import Notice
+from refimpl.solution.model_warning import Notice
 
 
 class _FromPart:

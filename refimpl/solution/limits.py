@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from enum import StrEnum
-from typing import Any
 
 import numpy as np
 
@@ -20,6 +18,7 @@ from refimpl.scene.resolution import resolution
 from refimpl.scene.scene import Body, Scene
 from refimpl.solution.cause_of_failure import cause_of_failure
 from refimpl.solution.evidence import Evidence
+from refimpl.solution.model_warning import Limit, ModelWarning, Notice
 from refimpl.surfaces import Flat, Sphere
 from refimpl.surfaces.statistics import rms_slopes
 
@@ -27,64 +26,6 @@ _PLASTICITY = 1.0  # section 8: beyond it contact ceases to be purely elastic (G
 _COEFFICIENT_ERROR = 0.02  # section 4: what the paper accepts of flat-surface influence coefficients
 _ADHESION = 0.1  # J/m^2: works of adhesion of polymers and rubbers are 0.05 to 0.1
 _RADIUS = 3.0  # elements: whole elements add 0.30 / r to the area of a circle of radius r, here a tenth
-
-
-class Limit(StrEnum):
-    """The limits of the model."""
-
-    PLASTICITY = "plasticity index"
-    HARDNESS = "peak pressure"
-    SHEAR = "shear strength"
-    RMS_GRADIENT = "rms gradient"
-    MAX_SLOPE = "maximum slope"
-    HALF_SPACE = "half-space"
-    BORDER = "border"
-    CORRELATION = "correlation length"
-    SHORT_CUT = "shortest wave"
-    DATA = "points of data"
-    RADIUS = "contact radius"
-    ACTIVE_SET = "active set of tau"
-    NEGLECTED = "neglected"
-
-
-class ModelWarning(str):
-    """A warning: its text, with the ``limit`` that was exceeded, the ``number`` found and the ``allowed``
-    one.
-
-    >>> ModelWarning(Limit.RADIUS, 1.5, 3.0, "few elements").number
-    1.5
-    """
-
-    limit: Limit
-    number: float
-    allowed: float
-
-    def __new__(cls, limit: Limit, number: float, allowed: float, text: str) -> ModelWarning:
-        self = super().__new__(cls, text)
-        self.limit, self.number, self.allowed = limit, number, allowed
-        return self
-
-    def __getnewargs__(self) -> tuple[Limit, float, float, str]:  # type: ignore[override]  # str's has text alone
-        return self.limit, self.number, self.allowed, str(self)
-
-
-class Notice(str):
-    """A note of a surface or of the refinement, with the fields of a `ModelWarning` but without numbers.
-
-    >>> Notice("3 points filled in").limit
-    'note'
-    """
-
-    limit = "note"
-    number = None
-    allowed = None
-
-
-def plain_warning(text: str) -> dict[str, Any]:
-    """Return a warning as plain values for JSON."""
-    if isinstance(text, ModelWarning):
-        return {"name": text.limit.value, "number": text.number, "limit": text.allowed, "text": str(text)}
-    return {"name": Notice.limit, "number": None, "limit": None, "text": text}
 
 
 def model_warnings(evidence: Evidence) -> tuple[ModelWarning | Notice, ...]:

@@ -13,7 +13,7 @@ from refimpl.model.materials import Material
 from refimpl.planning.plan import Plan
 from refimpl.scene.scene import Scene
 from refimpl.solution.evidence import Evidence
-from refimpl.solution.limits import Notice
+from refimpl.solution.model_warning import Notice
 from refimpl.surfaces import GaussianRoughness, SelfAffineRoughness, Sphere
 
 MODULI = (1e6, 2e12)  # Pa: from soft gels to twice diamond

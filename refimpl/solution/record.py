@@ -13,7 +13,8 @@ from refimpl.model.state import Status
 from refimpl.planning.plan import Plan
 from refimpl.solution.cost import Cost
 from refimpl.solution.details import Details, part
-from refimpl.solution.limits import ModelWarning, Notice, model_warnings
+from refimpl.solution.limits import model_warnings
+from refimpl.solution.model_warning import ModelWarning, Notice
 from refimpl.solution.plausibility import notes
 from refimpl.solution.quantities import Numbers
 

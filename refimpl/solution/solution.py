@@ -13,7 +13,7 @@ from refimpl.solution.arrays import as_dataset
 from refimpl.solution.cost import Cost
 from refimpl.solution.details import Details
 from refimpl.solution.evidence import Evidence
-from refimpl.solution.limits import Notice, plain_warning
+from refimpl.solution.model_warning import Notice, plain_warning
 from refimpl.solution.patches import Patch, patches_of
 from refimpl.solution.quantities import QUANTITIES
 from refimpl.solution.record import Record

@@ -223,7 +223,7 @@ def promising(problem: Problem, operator: Influence, pressure: Array, excluded: 
 def _holds_once_more(
     solver: TauSolver, problem: Problem, tolerance: float, active: Mask, reach: float
 ) -> bool:
-    """Whether the law holds everywhere with tau on all of the contact; if not, the solver goes back.
+    """Try tau on all of the contact; return whether that obeys the law, and restore the solver if not.
 
     A set that has lost most of the contact is given up otherwise: then it is tried in any case.
     """

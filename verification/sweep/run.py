@@ -17,7 +17,8 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.scene.scene_file import scene_from_dict
-from refimpl.solution.limits import ModelWarning, roughness_slope
+from refimpl.solution.limits import roughness_slope
+from refimpl.solution.model_warning import ModelWarning
 from refimpl.solution.quantities import QUANTITIES
 from verification.framework.threads import limited_to_one_thread
 

@@ -16,7 +16,7 @@ from refimpl.solution.quantities import REPORTED
 SIDE, RADIUS, DMU_DA = 1e-3, 2e-4, 4e4
 AREA_LIMIT, BETA, PEAK = math.pi * RADIUS**2, 0.1, 1e9
 
-KIND = 8  # of all faces of its edge: both ratios as of a ball's edge
+KIND = 8  # index of the table's row for every face: the ratios at the edge of a ball
 EDGE_SIZE = float(EXCESS[KIND]) / EDGE_SHARE  # mean excess over the edge
 
 

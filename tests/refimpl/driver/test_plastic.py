@@ -15,7 +15,7 @@ from refimpl.driver.options import Options
 from refimpl.model.problem import Terms
 from refimpl.scene.parameters import with_parameter
 from refimpl.sensitivities.budget import budget
-from refimpl.solution.limits import Limit, ModelWarning
+from refimpl.solution.model_warning import Limit, ModelWarning
 
 H = 0.8e9
 STEEL, COPPER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.34, hardness=H)

@@ -20,13 +20,8 @@ from refimpl.model.problem import Terms
 from refimpl.planning import plan
 from refimpl.planning.term_effects import Effect
 from refimpl.solution.evidence import Evidence
-from refimpl.solution.limits import (
-    Limit,
-    ModelWarning,
-    Notice,
-    model_warnings,
-    plain_warning,
-)
+from refimpl.solution.limits import model_warnings
+from refimpl.solution.model_warning import Limit, ModelWarning, Notice, plain_warning
 from tests.changed import changed
 from tests.refimpl.states import state_of
 

@@ -46,6 +46,16 @@ def test_persson_is_the_case_s() -> None:
         assert persson_share(p, FOUND, 1e9) == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.parametrize("p", [1e4, 1e6, 5e6])
+def test_greenwood_williamson_is_the_case_s(p: float) -> None:
+    """Another integral and another root finder; summits by McCool's formulas, written out here."""
+    m0, m2, m4 = FOUND.m0, FOUND.m2, FOUND.m4
+    rms = math.sqrt(m0 - 0.8968 * m2**2 / m4)
+    density, radius = m4 / m2 / (6 * math.pi * math.sqrt(3)), 3 / 8 * math.sqrt(math.pi / m4)
+    expected = float(rough_plane.greenwood_williamson_area(p / 1e9, rms, density, radius))
+    assert greenwood_williamson_share(p, FOUND, 1e9) == pytest.approx(expected, rel=1e-6)
+
+
 def test_greenwood_williamson_grows_with_the_load_to_all_of_it() -> None:
     shares = [greenwood_williamson_share(p, FOUND, 1e9) for p in (1e3, 1e5, 1e7, 1e9)]
     assert shares == sorted(shares)

@@ -136,7 +136,7 @@ def test_a_gwyddion_field_without_a_unit_takes_the_given_one(
     for key in ("si_unit_xy", "si_unit_z") if absent == "both" else (absent,):
         unit = key.encode() + b"\0oGwySIUnit\0\x0b\0\0\0unitstr\0sm\0"
         assert unit in raw
-        # of one length: the name of another key, and one letter
+        # texts of equal length: another key, and one letter changed
         raw = raw.replace(unit, unit[:-2] + spelling + b"\0" if spelling else b"no" + unit[2:])
     path.write_bytes(raw)
     if spelling:

@@ -313,7 +313,7 @@ def test_an_unknown_spelling_that_begins_like_a_comment_is_refused(tmp_path: Pat
 def test_marks_that_may_be_of_thousands_are_judged_by_all_rows(
     tmp_path: Path, separator: str, late: str
 ) -> None:
-    """998, then 1.002 far below: a thousand and two as well as one; 0.02 in any row tells."""
+    """After 998, the number 1.002 may be 1002 or 1.002; a row with 0.02 decides."""
     rows = [["998", "1.120", "995", "987"]] * 90 + [["997", "1.118", late, "985"]]
     (tmp_path / "a.txt").write_text("\n".join(map(separator.join, rows)))
     if late != "1.002":

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 import refimpl as rf
 from refimpl.errors import InputError
-from refimpl.solution.limits import Limit, ModelWarning
+from refimpl.solution.model_warning import Limit, ModelWarning
 from tests.changed import changed
 from verification.cli import plot_curves
 from verification.sweep import export, run
