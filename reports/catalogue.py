@@ -13,7 +13,7 @@ from reports.reproduction_figures import REPRODUCTION
 
 PLACES = ("crest", "flank", "valley")
 NEXT = {"+x 1": "downhill (+x)", "-x 1": "uphill (-x)", "across 1": "across"}
-QUANTITIES = {"mu": "$\\mu$", "A": "A", "f_max": "$f_{max}$", "Q": "Q (of F)"}
+QUANTITIES = {"mu": "$\\mu$", "A": "A", "f_max": "$p_{max}$", "Q": "Q (of F)"}
 TREATMENTS = ("correction", "near-field remedy")
 READINGS = "reading of the slope (degrees)"
 GROUPS = ("self", "in line", "across")

@@ -29,9 +29,9 @@ products take a tenth of the time.
 
 Error. Of the largest displacement by random pressures, 12 points leave 5e-12, 11 leave 3e-11, 13 leave 1e-12.
 The bell leaves 4e-13 of that by one element's pressure, 8e-12 of that by its shear. `ERROR` bounds them (a
-test), but for shear of both signs at random, which displaces little: 4e-11. beta and the width are the least
-for it. It is a hundredth of `TOLERANCE`, from which a solve may use these products. Its certificate is by the
-whole kernel.
+test) over what tractions of these sizes and one sign displace. White noise of both signs hardly displaces
+anything: over that the error of its shear is 4e-11. beta and the width are the least for `ERROR`, which is a
+hundredth of `TOLERANCE`, from which a solve may use these products. Its certificate is by the whole kernel.
 
 Cost. For n elements per side the circles have ``n + 56`` and ``n / 2 + 22`` points per side instead of 2 n:
 a product takes 0.75 of the time for 256, 0.55 for 512, 0.48 for 1024.

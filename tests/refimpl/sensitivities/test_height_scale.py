@@ -30,7 +30,7 @@ def test_a_tolerance_of_the_height_scale_moves_mu_as_another_solve_does(tmp_path
     slope = derived.derivatives["friction_coefficient_corrected"][NAME]
     change = (high.friction_coefficient_corrected - low.friction_coefficient_corrected) / 0.2
     assert slope < 0  # rougher: less area under tau
-    assert slope == pytest.approx(change, abs=0.25 * abs(change))
+    assert slope == pytest.approx(change, rel=0.15)  # quotients over 5 and 10 % differ by 13 %
 
 
 def test_the_factor_is_of_heights_and_positive(tmp_path: Path) -> None:
