@@ -237,19 +237,15 @@ def certify(
     v += problem.gap
     box = Window.around((pressure != 0) | (traction != 0), margin=0)  # elsewhere the summands vanish
     f, r, on_slopes = pressure[box.slices], traction[box.slices], found.windowed(box)
-    total, lowest = float(f.sum()), float(np.min(v, where=pressure < cap, initial=np.inf))
+    lowest = float(np.min(v, where=pressure < cap, initial=np.inf))
     contact: Mask = f > 0
-    shares = f / total if total > 0 else f  # products of very small pressures would underflow
+    pressed, shares = float(f.sum()) > 0, _shares(f)
     mean_v = approach_from(pressure, v, cap)
     approach = mean_v if problem.approach is None else problem.approach
     forces = resultants(f, r, on_slopes, problem.grid.element_area)
     energy = 0.5 * inner(shares, normal[box.slices])
-    if math.isinf(cap) or total <= 0:
-        gap = inner(shares, v[box.slices] - lowest)
-    else:
-        excess = v - approach
-        products = pressure * np.maximum(excess, 0) + (cap - pressure) * np.maximum(-excess, 0)
-        gap = float(products.sum()) / total
+    capped = pressed and not math.isinf(cap)
+    gap = _capped_gap(pressure, v, cap, approach) if capped else inner(shares, v[box.slices] - lowest)
     of_flats = flat_rounding(problem) * float(f.max())
     relative, penetration = contact_residuals(
         gap, energy, approach, lowest, of_flats if energy <= of_flats else 0.0
@@ -262,7 +258,7 @@ def certify(
     else:
         missed = missed_approach(pressure, v, cap, approach)
         missed += math.ulp(approach)  # the least approaches have no digits to agree in
-        load_error = relative_gap(missed, energy) if total > 0 else 0.0
+        load_error = relative_gap(missed, energy) if pressed else 0.0
     plastic = problem.indentation(pressure, lower + upper, found.cosine_product, approach)
     requested = on_slopes if plastic is None else problem.slopes(lower, upper, plastic).windowed(box)
     everywhere, at_cap = pressure > 0, pressure >= cap
@@ -297,6 +293,19 @@ def certify(
         status=status,
         iterations=iterations or {},
     )
+
+
+def _shares(f: Array) -> Array:
+    """Pressures over their sum, as products of very small ones would underflow; 0 without contact."""
+    total = float(f.sum())
+    return f / total if total > 0 else f
+
+
+def _capped_gap(f: Array, v: Array, cap: float, approach: float) -> float:
+    """Complementarity of both bounds per total pressure (m): pressure times gap, reserve times penetration."""
+    excess = v - approach
+    products = f * np.maximum(excess, 0) + (cap - f) * np.maximum(-excess, 0)
+    return float(products.sum()) / float(f.sum())
 
 
 def missed_approach(f: Array, v: Array, cap: float, approach: float) -> float:

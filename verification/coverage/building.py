@@ -20,7 +20,7 @@ from refimpl.model.materials import Pair
 from verification.coverage.class_scenes import CLASSES, GRIDS, scene
 from verification.coverage.store import features_of
 from verification.coverage.textures import RoundedPunch
-from verification.output.files import Progress
+from verification.output.files import Progress, appending
 from verification.output.provenance import provenance
 from verification.output.result_files import read_result, write_result
 
@@ -63,10 +63,7 @@ def solve_all(path: Path, seeds: Iterable[int], kinds: Iterable[str] = tuple(CLA
     known = {(one["kind"], one["seed"]) for one in _records(path)}
     todo = [(kind, seed) for seed in seeds for kind in kinds if (kind, seed) not in known]
     progress = Progress(len(todo))
-    cut = path.exists() and not path.read_bytes().endswith(b"\n")
-    with path.open("a", encoding="utf-8") as lines:
-        if cut:  # by a kill: what follows must not join it
-            lines.write("\n")
+    with appending(path) as lines:
         for kind, seed in todo:
             lines.write(json.dumps(_solved(kind, seed)) + "\n")
             lines.flush()

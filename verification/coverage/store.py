@@ -17,7 +17,7 @@ from refimpl.accuracy.refinement import FIRST_GRIDS, longer_side
 from refimpl.grid.straight_edges import StraightEdges
 from refimpl.model.friction import FrictionLaw, is_frictionless
 from verification.coverage.scenes import random_scene
-from verification.output.files import Progress
+from verification.output.files import Progress, appending
 
 NUMBERS = ("friction_coefficient", "contact_area", "contact_area_corrected", "max_pressure")
 FINEST = 512  # elements per side that may be requested; beyond are references
@@ -59,10 +59,7 @@ def refine(path: Path, seeds: Iterable[int], grids: Iterable[int], solve: Solve 
     known = {(one.seed, one.M) for one in grid_solves(path)}
     todo = [(seed, M) for seed in seeds for M in grids if (seed, M) not in known]
     progress = Progress(len(todo))
-    cut = path.exists() and not path.read_bytes().endswith(b"\n")
-    with path.open("a", encoding="utf-8") as lines:
-        if cut:  # by a kill: what follows must not join it
-            lines.write("\n")
+    with appending(path) as lines:
         for seed, M in todo:
             lines.write(json.dumps(asdict(solve(seed, M)), allow_nan=False) + "\n")
             lines.flush()

@@ -12,6 +12,7 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import TextIO
 
 _UNUSUAL = re.compile(r"[^\n -~]")
 _SHOWN = 40  # characters of the name of a target in that of its temporary file
@@ -82,6 +83,16 @@ def write_text(text: str, path: Path) -> None:
     """Write a UTF-8 text file in one step."""
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
+
+
+@contextmanager
+def appending(path: Path) -> Iterator[TextIO]:
+    """A file of lines, open for more of them; a last one that was cut short by a kill is ended first."""
+    cut = path.exists() and not path.read_bytes().endswith(b"\n")
+    with path.open("a", encoding="utf-8") as lines:
+        if cut:
+            lines.write("\n")
+        yield lines
 
 
 def to_json(document: object, *, ascii_only: bool = False) -> str:
