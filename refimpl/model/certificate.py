@@ -302,7 +302,7 @@ def _shares(f: Array) -> Array:
 
 
 def _capped_gap(f: Array, v: Array, cap: float, approach: float) -> float:
-    """Complementarity of both bounds per total pressure (m): pressure times gap, reserve times penetration."""
+    """Return pressure times gap and reserve times penetration, per total pressure (m)."""
     excess = v - approach
     products = f * np.maximum(excess, 0) + (cap - f) * np.maximum(-excess, 0)
     return float(products.sum()) / float(f.sum())
