@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from refimpl.grid import Array, Grid
+from refimpl.grid import Array, Grid, inner
 from refimpl.scene.scene import Scene
 from refimpl.surfaces import Sphere
 
@@ -88,7 +88,10 @@ def _interpolation_loss(z: Array, periodic: bool) -> float:
 
 
 def _mean_square(values: Array) -> float:
-    known = values[np.isfinite(values)]
+    total = inner(values, values)
+    if math.isfinite(total) and values.size:
+        return total / values.size
+    known = values[np.isfinite(values)]  # missing points
     return float((known**2).mean()) if known.size else 0.0
 
 
