@@ -18,9 +18,9 @@ from verification.benchmarks.rounds import CERTIFIED
 from verification.output.text_table import columns
 
 
-def turns(name: str, kind: str, M: int, count: int) -> tuple[Array, float]:
+def turns(name: str, kind: str, M: int, count: int, *, bars: bool = False) -> tuple[Array, float]:
     """Return processor seconds of the solve and of its solver, ``(count, 2)``, and the work of a solve."""
-    both = own(*SETTINGS[name], kind, M, CERTIFIED, bars=False), alone(*SETTINGS[name], kind, M, CERTIFIED)
+    both = own(*SETTINGS[name], kind, M, CERTIFIED, bars=bars), alone(*SETTINGS[name], kind, M, CERTIFIED)
     work = [press().operations["n log2 n"] for press in both]  # a first solve each, which is not timed
     clocks = np.empty((count, 3))
     for row in clocks:
@@ -36,10 +36,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--grids", nargs="+", type=int, default=[128, 256, 512])
     parser.add_argument("--rounds", type=int, default=9)
+    parser.add_argument("--bars", action="store_true", help="solves with their error bars and warnings")
     options = parser.parse_args()
     rows, least = [["problem", "code", "ms", "solver, ms", "ratio", "quartiles", "work over none"]], math.nan
     for kind, M, name in ((kind, M, name) for kind in FLATS for M in options.grids for name in (OWN, SLOPED)):
-        seconds, work = turns(name, kind, M, options.rounds)
+        seconds, work = turns(name, kind, M, options.rounds, bars=options.bars)
         least = work if name == OWN else least
         low, middle, high = np.quantile(seconds[:, 0] / seconds[:, 1], [0.25, 0.5, 0.75])
         medians = [f"{1e3 * value:.3g}" for value in np.median(seconds, axis=0)]
