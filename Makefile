@@ -6,6 +6,8 @@ OUT := out
 # One BLAS thread: the runner and pytest use their own processes.
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
+# Bytecode is kept: a test that starts the program would compile it again.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: report results test lint setup clean nightly mutation site licences
 
