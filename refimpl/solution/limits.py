@@ -255,10 +255,7 @@ def _correlation(evidence: Evidence) -> ModelWarning | None:
 
 def _data(evidence: Evidence) -> ModelWarning | None:
     """Measured heights and arrays are sampled, not averaged."""
-    scene, grid = evidence.scene, evidence.problem.grid
-    parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
-    pitches = [pitch for part in parts if (pitch := part.pitch(grid.lengths)) is not None]
-    points = max(grid.spacings) / min(pitches, default=math.inf)
+    points = max(evidence.problem.grid.spacings) / (evidence.scene.pitch or math.inf)
     text = (
         f"{points:.2g} points of a surface's data per element: points between the elements' centres are not "
         "sampled, and error bars do not include them"
