@@ -54,9 +54,10 @@ class Options:
             check_accuracy(self.accuracy)
             check_has_bar(self.target_quantity, self.scene.friction)
         require_number("tolerance", self.residual_tolerance, "a number between 0 and 1", above=0, below=1)
-        if (self.grid is None) == (self.accuracy is None):
-            allowed = "a number of elements along the longer side, or two, or an accuracy, and not both"
-            raise InputError("grid", self.grid, allowed)
+        if self.grid is None and self.accuracy is None:
+            object.__setattr__(self, "grid", self.scene.default_grid)
+        if self.grid is not None and self.accuracy is not None:
+            raise InputError("grid", self.grid, "none beside an accuracy, which chooses the grid")
         for name, value in self.limits.given.items() if self.accuracy is None else ():
             raise InputError(name, value, "none without an accuracy")
         _ = self.solve_grid  # refuses what is no grid

@@ -72,7 +72,9 @@ def _sample(study: Study) -> None:
 def check_memory(study: Study) -> None:
     """Raise InputError where the finest grid does not fit into this machine's free memory."""
     scene = next(_closest(study))
-    memory_of(study.settings.get("method", "fft"), scene.grid(study.finest))
+    memory_of(
+        study.settings.get("method", "fft"), scene.grid(max(study.vary.get("grid", (scene.default_grid,))))
+    )
 
 
 def covered_size(study: Study) -> tuple[float, float]:

@@ -129,8 +129,6 @@ def _check(study: Study) -> None:
         raise InputError(
             "vary.grid", study.vary["grid"], "none beside solve.accuracy, which chooses the grid"
         )
-    if "accuracy" not in study.settings and "grid" not in study.vary:
-        raise InputError("vary.grid", None, "elements per side, or an accuracy in [solve]")
     runs = math.prod([study.realisations, *map(len, study.vary.values())])
     if runs > MAX_RUNS:
         raise InputError("vary", f"{runs} runs", f"at most {MAX_RUNS} runs")
