@@ -65,7 +65,7 @@ def test_a_missing_row_of_points_is_missing_points(tmp_path: Path) -> None:
 def test_points_off_a_grid_are_refused_with_a_number(tmp_path: Path) -> None:
     points = np.random.default_rng(3).random((200, 3))
     np.savetxt(tmp_path / "map.xyz", points)
-    with pytest.raises(InputError, match="points on a regular grid"):
+    with pytest.raises(InputError, match="x, y, z on a regular grid"):
         read(tmp_path / "map.xyz", unit="um")
     grid = np.array([(x, y, 1.0) for x in range(5) for y in range(5)])
     grid[7, 0] += 0.3
@@ -324,7 +324,8 @@ def test_marks_that_may_be_of_thousands_are_judged_by_all_rows(
 
 
 @pytest.mark.parametrize(
-    ("mark", "size", "noted"), [(-9999, 1, True), (-999, 300, True), (-1e6, 1, True), (-4, 1, False)]
+    ("mark", "size", "noted"),
+    [(-9999, 1, True), (-999, 300, True), (-1e6, 1, True), (-4, 1, False), (-4, 0, False), (-9999, 0, True)],
 )
 def test_points_far_outside_all_others_get_a_note(
     tmp_path: Path, mark: float, size: float, noted: bool
