@@ -26,8 +26,9 @@ results: $(READY)
 	$(BIN)/python -m verification.output.result_files reports/results/*.json
 	$(BIN)/python -m reports.results_page
 
-test: lint
-	$(BIN)/python -m pytest -n 2 --dist worksteal
+# Ruff and mypy beside the tests.
+test: $(READY)
+	$(MAKE) --no-print-directory lint & $(BIN)/python -m pytest -n 2 --dist worksteal && wait $$!
 
 lint: $(READY)
 	$(BIN)/ruff check .
