@@ -62,8 +62,8 @@ def settled_indentation(
     """Return the plastic indentation and the slopes of the surface that it lowers, each from the other.
 
     An indentation changes with the cosines by ``approach - h``, and the slopes by its differences: on
-    elements smaller than that depth plain updates of one by the other diverge. They are mixed instead, which takes no
-    transform. ``slopes`` are a first guess.
+    elements smaller than that depth plain updates of one by the other diverge. They are mixed instead, which
+    takes no transform. ``slopes`` are a first guess.
     """
     found = indentation(slopes)
     slopes = problem.slopes(lower, upper, found)
