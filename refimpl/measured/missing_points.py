@@ -130,7 +130,7 @@ def _cycle(levels: list[_Level], depth: int, r: Array) -> Array:
         return u
     u += smooth * (r - operator @ u)
     for _ in range(1 if depth == 0 else 2):
-        rest: Array = np.bincount(aggregate, r - operator @ u)
+        rest = np.bincount(aggregate, r - operator @ u).astype(float)
         coarse = _cycle(levels, depth + 1, rest)
         u += _OVERCORRECTION * coarse[aggregate]
     for _ in range(2):
