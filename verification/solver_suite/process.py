@@ -34,7 +34,7 @@ from verification.solver_suite.protocol import NUMBERS, SolverUnderTest, abiliti
 Source = Callable[[], SolverUnderTest]
 """Factory of the solver under test, called in the process that will run the solver; picklable."""
 PATIENCE = 1.0
-"""Seconds for a process to end by itself once it is asked for nothing more, and to be gone once killed."""
+"""Seconds for a process to end by itself once no more is requested, and to be gone once killed."""
 ROUNDS = 20
 """Most times that processes left behind are looked for."""
 LONGEST_HEADER = 1 << 16
