@@ -139,7 +139,7 @@ class _Refinement:
         )
 
     def expected_end(self, results: Sequence[GridFeatures]) -> tuple[int, str]:
-        """Return the longer side of the last grid, by the error bars so far, and why the accuracy may fail."""
+        """Return the longer side of the last grid, by the bars so far, and why the accuracy may fail."""
         size, value = longer_side(results[-1]), abs(results[-1].numbers[self._quantity])
         stuck = unfalling(results, self._quantity, self.data)
         refusal = reason_unreachable(stuck, value, self._accuracy) if value else ""
