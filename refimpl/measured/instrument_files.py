@@ -55,7 +55,7 @@ CORRUPT: tuple[type[Exception], ...] = (
 
 
 def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
-    """Heights of a binary instrument file; ``head``: its first bytes. Raises InputError."""
+    """Return the heights of a binary instrument file; ``head``: its first bytes. Raises InputError."""
     library = library_for(path)
     if is_container(path):
         return read_or_refuse(path, lambda file: _of_container(library, file, given), corrupt(library))
@@ -75,7 +75,7 @@ def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
 
 
 def claimed_by_magic(path: Path, head: bytes) -> bool:
-    """True if the first bytes are the mark of an instrument's format; False without the library."""
+    """Return True if the first bytes are the mark of an instrument's format; False without the library."""
     try:
         library = library_for(path)
     except InputError:
@@ -105,7 +105,7 @@ def _formats(library: ModuleType, path: Path, head: bytes) -> list[str]:
 def read_as(
     library: ModuleType, path: Path, name: str, given: Overrides, source: Source, notes: tuple[str, ...] = ()
 ) -> RawHeights:
-    """Heights of one file, read as the format ``name`` from ``source``."""
+    """Return the heights of one file, read as the format ``name`` from ``source``."""
     with _quietly() as said, library.open_topography(source, format=name) as reader:
         index, channel = choose(path, name, reader, given)
         notes += taken(reader, channel)
@@ -184,7 +184,7 @@ def _of_container(library: ModuleType, path: Path, given: Overrides) -> RawHeigh
 
 
 def read_or_refuse(path: Path, load: Callable[[Path], T], kinds: tuple[type[Exception], ...] = CORRUPT) -> T:
-    """``load(path)``, whose failures become one line of InputError."""
+    """Return ``load(path)``, whose failures become one line of InputError."""
     try:
         return load(path)
     except InputError:
@@ -194,7 +194,7 @@ def read_or_refuse(path: Path, load: Callable[[Path], T], kinds: tuple[type[Exce
 
 
 def library_for(path: Path) -> ModuleType:
-    """SurfaceTopography. Raises InputError where it is not installed."""
+    """Import SurfaceTopography. Raises InputError where it is not installed."""
     try:
         import SurfaceTopography
         import SurfaceTopography.Exceptions
@@ -209,7 +209,7 @@ def library_for(path: Path) -> ModuleType:
 
 
 def corrupt(library: ModuleType) -> tuple[type[Exception], ...]:
-    """All that the library raises on files that are not what they claim to be."""
+    """Return all that the library raises on files that are not what they claim to be."""
     own = library.Exceptions  # with no base in common
     return (
         *CORRUPT,
@@ -221,6 +221,6 @@ def corrupt(library: ModuleType) -> tuple[type[Exception], ...]:
 
 
 def first_line(error: object) -> str:
-    """One line of an error or a warning: its kind and its own words."""
+    """Return one line of an error or a warning: its kind and its own words."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()] or [""]
     return f"{type(error).__name__}: {printable(lines[0])[:160]}"

@@ -26,7 +26,7 @@ def check_orientation(mirror: object, rotate_deg: object, turn_over: object) -> 
 
 
 def checked_centre(centre: object) -> tuple[float, float]:
-    """The point (m) of the key ``centre``. Raises InputError."""
+    """Return the point (m) of the key ``centre``. Raises InputError."""
     allowed = "two lengths in m from the corner of the file's own area, (x, y)"
     if not isinstance(centre, list | tuple) or len(centre) != 2:
         raise InputError("centre", centre, allowed)
@@ -43,11 +43,11 @@ class Oriented:
     centre: tuple[float, float]
 
     def negated(self) -> Oriented:
-        """``z -> -z``: the surface that a replica was taken from."""
+        """Return ``z -> -z``: the surface that a replica was taken from."""
         return self._with(-self.reading.heights, self.centre)
 
     def mirrored(self, axis: int) -> Oriented:
-        """``x -> -x`` (axis 0) or ``y -> -y`` (axis 1)."""
+        """Return ``x -> -x`` (axis 0) or ``y -> -y`` (axis 1)."""
         centre = tuple(
             edge - at if k == axis else at
             for k, (edge, at) in enumerate(zip(self.reading.area, self.centre, strict=True))
@@ -55,7 +55,7 @@ class Oriented:
         return self._with(np.flip(self.reading.heights, axis), (centre[0], centre[1]))
 
     def rotated(self, degrees: int) -> Oriented:
-        """Turned anticlockwise in the plane: ``(x, y) -> (-y, x)`` for 90 degrees."""
+        """Turn anticlockwise in the plane: ``(x, y) -> (-y, x)`` for 90 degrees."""
         found = self
         for _ in range(degrees // 90):
             (x, y), (dx, dy) = found.centre, found.reading.pixel
@@ -64,7 +64,7 @@ class Oriented:
         return found
 
     def turned_over(self) -> Oriented:
-        """Turned over about the x axis: ``z(x, y) -> -z(x, -y)``."""
+        """Turn over about the x axis: ``z(x, y) -> -z(x, -y)``."""
         return self.mirrored(1).negated()
 
     def _with(self, heights: np.ndarray, centre: tuple[float, float]) -> Oriented:

@@ -87,8 +87,8 @@ def _without_outliers(reading: RawHeights, times: float, repeats: bool) -> RawHe
 
 
 def off_neighbours(z: Array, repeats: bool) -> Array:
-    """Distance of each point from its neighbours: the median, over the four lines through it, of that from
-    the mean of the two neighbours on the line. Lines that leave the map count as straight."""
+    """Return the distance of each point from its neighbours: the median, over the four lines through it, of
+    that from the mean of the two neighbours on the line. Lines that leave the map count as straight."""
     padded = np.pad(z, 1, mode="wrap") if repeats else np.pad(z, 1, mode="reflect", reflect_type="odd")
     nx, ny = z.shape
     total, low, high = np.zeros_like(z), np.full_like(z, np.inf), np.full_like(z, -np.inf)
@@ -144,7 +144,8 @@ def _filtered(
 
 
 def gaussian_filter(z: Array, pixel: tuple[float, float], wavelength: float, repeats: bool = False) -> Array:
-    """Mean of ``z`` with Gaussian weights, transmission 2^-(wavelength f)^2 at the spatial frequency f.
+    """Return the mean of ``z`` with Gaussian weights, transmission 2^-(wavelength f)^2 at the spatial
+    frequency f.
 
     Beyond the border there is nothing: the weights inside are scaled to a sum of one. ``repeats``: periodic.
     """

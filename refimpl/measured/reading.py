@@ -78,7 +78,8 @@ class Overrides:
         pixel: tuple[float, float] | None,
         what: str = "does not state them",
     ) -> tuple[str, tuple[float, float], tuple[str, ...]]:
-        """Unit, pixel, notes, from what the file states (None: nothing). Raises InputError if one lacks."""
+        """Return the unit, pixel, notes, from what the file states (None: nothing). Raises InputError if one
+        lacks."""
         if (self.unit or unit) is None or (self.pixel_size or pixel) is None:
             raise InputError("unit, pixel_size", (self.unit, self.pixel_size), f"both: {name} {what}")
         notes = []
@@ -99,7 +100,8 @@ class Overrides:
 
 
 def checked(path: Path, raw: Array) -> Array:
-    """Heights as doubles, missing ones NaN. Raises InputError for what is no map of real numbers."""
+    """Return the heights as doubles, missing ones NaN. Raises InputError for what is no map of real
+    numbers."""
     if raw.ndim != 2 or min(raw.shape) < 4 or raw.size > MAX_POINTS or raw.dtype.kind not in "fiu":
         what = f"{raw.dtype} of shape {raw.shape} in {path.name}"
         allowed = f"a 2-D table of real numbers, at least 4 an axis, at most {MAX_POINTS}"
@@ -112,7 +114,7 @@ def checked(path: Path, raw: Array) -> Array:
 
 
 def far_points(found: RawHeights) -> tuple[str, ...]:
-    """A note on points of one value far outside all others, which may stand for missing points."""
+    """Return a note on points of one value far outside all others, which may stand for missing points."""
     z, notes = found.heights[np.isfinite(found.heights)], []
     for value in {float(z.min()), float(z.max())} if z.size else ():
         others = z[z != value]

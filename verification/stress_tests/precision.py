@@ -32,7 +32,7 @@ class Arithmetic(NamedTuple):
 
 
 def arithmetics() -> tuple[Arithmetic, ...]:
-    """Arithmetics of this machine: where long double is double, without additional digits."""
+    """Return the arithmetics of this machine: where long double is double, without additional digits."""
     floats = ((np.float32, "float32"), (np.float64, "float64"), (np.longdouble, "long double"))
     found = [Arithmetic(name, -np.log10(float(np.finfo(t).eps)), t, t, np) for t, name in floats]
     functions = SimpleNamespace(arcsinh=mp.asinh, arctan=mp.atan, log=mp.log)
@@ -52,7 +52,8 @@ TANGENTIAL = ("tangential kernel", _tangential_corner, CERRUTI, kernel_reference
 
 
 def around(offset: float) -> list[tuple[float, float]]:
-    """Points ``(x, y)`` in elements near an offset, exact in every arithmetic: one alone may be lucky."""
+    """Return the points ``(x, y)`` in elements near an offset, exact in every arithmetic: one alone may be
+    lucky."""
     shifts = [k / 16 for k in range(1, 8)] if offset >= 1 else [k * offset / 8 for k in range(1, 8)]
     return [(offset + shift, y) for shift in shifts for y in (0.25, 0.3125)]
 
@@ -98,7 +99,7 @@ def _nodes(order: int) -> tuple[Any, Any]:
 
 
 def lost(arithmetic: Arithmetic, found: list[Any] | None, exact: list[Any]) -> float | None:
-    """Digits lost by the worst value; None where the arithmetic has no such implementation."""
+    """Return the digits lost by the worst value; None where the arithmetic has no such implementation."""
     if found is None:
         return None
     with mp.workdps(REFERENCE_DIGITS):
@@ -128,7 +129,7 @@ PLACES = (
 
 
 def table() -> dict[str, Any]:
-    """The heat map: rows of digits lost, and for each quantity its cause and cure."""
+    """Return the heat map: rows of digits lost, and for each quantity its cause and cure."""
     kinds = arithmetics()
     digits: dict[str, list[float | None]] = {}
     causes: dict[str, str] = {}

@@ -95,7 +95,7 @@ class CappedCG(ProjectedCG):
         return super().undecided(stiffness, among) if below_cap else self.capped.size
 
     def iterate(self) -> None:
-        """One step on the free elements, then the exchange of elements at both bounds."""
+        """Take one step on the free elements, then the exchange of elements at both bounds."""
         if self.free.any():
             self._step()
         self._separation = None
