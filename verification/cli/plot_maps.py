@@ -305,6 +305,6 @@ def _arrow(axes: Axes, direction: float) -> None:
         textcoords=corner, annotation_clip=False, arrowprops={"arrowstyle": "->", "lw": 0.9},
     )  # fmt: skip
     axes.annotate(
-        "upper body slides", (1.0, 1.0), (-2.5 * half, 8.0), xycoords="axes fraction",
+        "sliding", (1.0, 1.0), (-2.5 * half, 8.0), xycoords="axes fraction",
         textcoords="offset points", ha="right", va="center", fontsize=7,
     )  # fmt: skip
