@@ -1,4 +1,4 @@
-"""Section 8 with pressures that end at the hardness: friction and area over roughness, elastic and capped."""
+"""Section 8 with pressures capped at the hardness: friction and area over roughness, elastic and capped."""
 
 from __future__ import annotations
 

@@ -96,7 +96,7 @@ class ContactProblem:
     periodic : the domain repeats in both directions; otherwise the half-space is free around it
     tolerance : relative residual to reach: complementarity gap over elastic energy, and load balance
     coupling : friction, or None
-    hardness : at which pressures end (Pa), or None; posed only where the ability ``hardness`` is claimed
+    hardness : cap of the pressures (Pa), or None; posed only where the ability ``hardness`` is claimed
     spacing_y : edge of one element along y (m), that along x by default; another one only where the ability
         ``oblong_elements`` is claimed
 

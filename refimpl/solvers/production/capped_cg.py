@@ -1,4 +1,4 @@
-"""Projected CG with a second bound: pressures end at the hardness, ``0 <= f <= H``.
+"""Projected CG with a second bound: pressures are capped at the hardness, ``0 <= f <= H``.
 
 CG works on the free elements, ``0 < f < H``. Elements that reach H leave them and keep that pressure; they
 come back where ``v`` exceeds the approach, as less pressure would do there. The load's target for the free

@@ -1,4 +1,4 @@
-"""Pressures that end at the hardness: both solvers, manufactured states, limits and extremes."""
+"""Pressures capped at the hardness: both solvers, manufactured states, limits and extremes."""
 
 from __future__ import annotations
 
