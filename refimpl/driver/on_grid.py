@@ -23,6 +23,7 @@ from refimpl.solution.cost import Cost, total_cost
 from refimpl.solution.evidence import Evidence
 from refimpl.solvers.paper import solve_paper
 from refimpl.solvers.production.coarse_grids import InitialGuess
+from refimpl.solvers.production.fully_plastic import at_hardness
 from refimpl.solvers.production.nested_solver import solve_fft
 
 Progress = Callable[[str], None]
@@ -67,6 +68,9 @@ def _solve_problem(
 ) -> State:
     if problem.approach is not None and problem.approach <= 0:
         return _without_contact(problem)
+    full = at_hardness(problem)
+    if full is not None:
+        return full
     if method == "dense":
         return solve_reference(problem)
     if method == "paper":
