@@ -33,7 +33,7 @@ from refimpl.measured.file_kinds import kind_of
 from refimpl.measured.point_tables import points_map
 from refimpl.measured.reading import ALONG_Y, ARRAY, IMAGE, UNITS, Overrides, RawHeights, checked
 from refimpl.measured.text_lines import WYKO
-from refimpl.measured.workarounds import NMS_UNIT, Source, refuse_changed, rewritten
+from refimpl.measured.workarounds import NMS_UNIT, Source, rewritten
 
 T = TypeVar("T")
 
@@ -58,12 +58,11 @@ def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
     """Heights of a binary instrument file; ``head``: its first bytes. Raises InputError."""
     library = library_for(path)
     if is_container(path):
-        return _of_container(library, path, given)
+        return read_or_refuse(path, lambda file: _of_container(library, file, given), corrupt(library))
     formats = _formats(library, path, head)
     failures = []
     for name in formats:
         try:
-            refuse_changed(path, name)
             return read_as(library, path, name, given, *rewritten(path, name, given))
         except InputError:
             raise
@@ -165,19 +164,18 @@ def _of_container(library: ModuleType, path: Path, given: Overrides) -> RawHeigh
     """A measurement of a container of contact.engineering, scaled and detrended as its metadata say."""
     from SurfaceTopography.Container.IO import CEReader
 
-    try:
-        with _quietly() as said:
-            reader = CEReader(str(path))
-            containers = range(reader.nb_containers)
-            members = [(k, j, m) for k in containers for j, m in enumerate(reader.members(k))]
-            k, j, member = members[chosen(path, [m.name for *_, m in members], given.channel)]
-            form = library.IO.detect_format(member.open)
-            found = reader.container(k)[j]
-            if found.dim != 2 or not found.is_uniform:
-                raise InputError("path", str(path), f"a map of heights ({member.name!r} is a line scan)")
-            reading = _record(path, form, found, True, given, said)
-    except corrupt(library) as error:
-        raise InputError("path", str(path), f"a file that can be read ({first_line(error)})") from error
+    with _quietly() as said:
+        reader = CEReader(str(path))
+        containers = range(reader.nb_containers)
+        members = [(k, j, m) for k in containers for j, m in enumerate(reader.members(k))]
+        k, j, member = members[chosen(path, [m.name for *_, m in members], given.channel)]
+        found = reader.container(k)[j]
+        if found.dim != 2 or not found.is_uniform:
+            raise InputError("path", str(path), f"a map of heights ({member.name!r} is a line scan)")
+        form = library.IO.detect_format(member.open)
+        if form == "asc" and member.open().read(len(WYKO)) in (WYKO, WYKO.encode()):
+            raise InputError("path", str(path), f"{member.name!r} unpacked: Wyko's text is read on its own")
+        reading = _record(path, form, found, True, given, said)
     names = tuple(m.name for *_, m in members)
     prepared = found.info.get("detrend_mode") or "none"
     note = f"{form} file {member.name!r} of a container of contact.engineering, its detrending {prepared!r}"

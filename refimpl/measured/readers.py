@@ -127,7 +127,7 @@ def _text(path: Path, given: Overrides, head: bytes) -> RawHeights:
         raise InputError(
             "path", str(path), f"a map (a line scan: {rows} rows of {columns} columns were found)"
         )
-    if is_triples(table.rows):
+    if is_triples(table.rows) and not table.is_sized:
         return points_map(path, table.rows, given, table.header, table.notes)
     if not table.header:
         return _plain(path, checked(path, table.rows), given, "as a plain table of text", table)

@@ -120,7 +120,7 @@ def far_points(found: RawHeights) -> tuple[str, ...]:
             continue
         low, high, size = float(others.min()), float(others.max()), UNITS[found.unit]
         usual = any(np.isclose(value, mark * size, 1e-6, 0) for mark in _NO_DATA)
-        if max(value - high, low - value) > (0.5 if usual else _FAR) * (high - low):
+        if (usual or high > low) and max(value - high, low - value) > (0.5 if usual else _FAR) * (high - low):
             span = f"far outside all others, {low / size:.4g} to {high / size:.4g}"
             shown = f"{z.size - others.size} points are at {value / size:.6g} {found.unit}, {span}"
             notes.append(f"{shown}: if they are missing points, write nan there")
