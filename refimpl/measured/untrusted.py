@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -70,14 +70,6 @@ def _refuse_external_data(path: Path) -> None:
     is_hdf5: bool = path.is_file() and h5py.is_hdf5(path)
     if not is_hdf5:
         return
-    with h5py.File(path, "r") as file:
-        for name in _external(file, h5py):
-            allowed = f"an HDF5 file that holds all its data ({name[:60]!r} is in another file)"
-            raise InputError("path", str(path), allowed)
-
-
-def _external(file: Any, h5py: Any) -> Iterator[str]:
-    """Names of links and of data in other files."""
     found: list[str] = []
 
     def see_link(name: str, link: object) -> None:
@@ -88,6 +80,9 @@ def _external(file: Any, h5py: Any) -> Iterator[str]:
         if isinstance(item, h5py.Dataset) and (item.external or item.is_virtual):
             found.append(name)
 
-    file.visititems_links(see_link)
-    file.visititems(see_object)
-    return iter(found)
+    with h5py.File(path, "r") as file:
+        file.visititems_links(see_link)
+        file.visititems(see_object)
+    if found:
+        allowed = f"an HDF5 file that holds all its data ({found[0][:60]!r} is in another file)"
+        raise InputError("path", str(path), allowed)
