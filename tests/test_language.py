@@ -11,6 +11,7 @@ import re
 import tokenize
 import tomllib
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -71,6 +72,7 @@ def names(path: Path) -> Iterator[str]:
             yield from [node.name, *(field.id for field in fields if isinstance(field, ast.Name))]
 
 
+@cache
 def replaced_words(name: str) -> list[str]:
     """Words of the last part of a name that have another word in ``language.toml``.
 
@@ -84,7 +86,7 @@ def replaced_words(name: str) -> list[str]:
 
 def test_names_have_the_fields_words() -> None:
     files = [*FILES, *(ROOT / "tests").rglob("*.py")]
-    matches = {name: replaced_words(name) for path in files for name in names(path) if replaced_words(name)}
+    matches = {name: words for path in files for name in names(path) if (words := replaced_words(name))}
     assert {name: words for name, words in matches.items() if name not in KEPT} == {}
     assert set(KEPT) <= set(matches)  # each is needed
 
@@ -115,9 +117,12 @@ def texts(source: str) -> Iterator[tuple[int, str]]:
 
 def found(path: Path) -> list[tuple[int, str, str]]:
     """Line, matched text and advice of every match in a file."""
-    matches = []
-    for line, text in texts(path.read_text(encoding="utf-8")):
-        for pattern in PATTERNS:
+    matches, read = [], list(texts(path.read_text(encoding="utf-8")))
+    whole = "\0".join(text for _, text in read)
+    for pattern in PATTERNS:
+        if not re.search(pattern["match"], whole, re.IGNORECASE):
+            continue
+        for line, text in read:
             for match in re.finditer(pattern["match"], text, re.IGNORECASE):
                 at = line + text.count("\n", 0, match.start())
                 matches.append((at, match.group(), pattern["instead"]))

@@ -76,7 +76,7 @@ class Forward:
 
     def __init__(
         self,
-        grid: int | tuple[int, int],
+        grid: int | tuple[int, int] | None,
         memory: Memory | None = None,
         key: Key | None = None,
         report: Callable[[str], None] | None = None,

@@ -36,7 +36,7 @@ _ONE_DRAW = (
 def identify(
     scene: Scene,
     rows: Sequence[Row],
-    grid: int | tuple[int, int],
+    grid: int | tuple[int, int] | None = None,
     *,
     loads: Sequence[float] = (),
     fit: Sequence[str] = (),
@@ -53,7 +53,7 @@ def identify(
     ----------
     scene : surfaces, materials and frame; its friction is the first guess, its load is not used
     rows : measurements (`read_rows`), of at least two loads
-    grid : as in `refimpl.solve`
+    grid : as in `refimpl.solve`, its default by the maps of each row
     loads : further loads (N) at which mu is predicted
     fit : parameters that are fitted as well, from the scene's values: "hardness", or the whole name
         "lower.material.hardness". It takes two more solves a row

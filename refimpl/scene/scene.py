@@ -31,6 +31,7 @@ from refimpl.surfaces.shapes import Sphere
 _ASKED_OF_SURFACES = {"side": "side", "periodic": "periodic", "offset": "sliding_offset"}
 MAX_RATIO = 1000.0  # ratio of the domain's lengths, and of an element's edges; larger: an error
 _FAVOURED = 16  # a divisor of all sizes in `refimpl.accuracy.refinement`
+_OF_FORMULAS, _OF_A_MAP = 256, 512  # elements along the longer side by default; of a map's points at most
 _SLENDER = 4.0  # lengths' ratio from which a refinement's grids are finer along the longer side
 
 
@@ -187,6 +188,19 @@ class Scene:
         fewer = math.floor(exact)
         other = max(1, fewer + (exact**2 > fewer * (fewer + 1)))  # nearer neighbour by ratio
         return (longest, other) if Lx == high else (other, longest)
+
+    @property
+    def pitch(self) -> float | None:
+        """Smallest distance of neighbouring points of measured surfaces and arrays (m); None without any."""
+        parts = (*self.parts("lower"), *self.parts("upper"))
+        found = [pitch for part in parts if (pitch := part.pitch(self.lengths)) is not None]
+        return min(found, default=None)
+
+    @property
+    def default_grid(self) -> int:
+        """Elements along the longer side by default: a point of the finest map each, up to 512; else 256."""
+        pitch = self.pitch
+        return _OF_FORMULAS if pitch is None else max(1, min(_OF_A_MAP, round(max(self.lengths) / pitch)))
 
     @property
     def slenderness(self) -> int:

@@ -51,9 +51,7 @@ def data_error(scene: Scene, grid: Grid) -> float:
 
 def finest_by_data(scene: Scene) -> float:
     """Return the elements along the longer side at four a pitch; infinite without measured parts."""
-    parts = [part for name in ("lower", "upper") for part in scene.parts(name)]
-    pitches = [pitch for part in parts if (pitch := part.pitch(scene.lengths)) is not None]
-    return MOST_ELEMENTS * max(scene.lengths) / min(pitches) if pitches else math.inf
+    return math.inf if scene.pitch is None else MOST_ELEMENTS * max(scene.lengths) / scene.pitch
 
 
 def unseen_share(z: Array, periodic: bool = False) -> float:

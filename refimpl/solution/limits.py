@@ -103,9 +103,10 @@ def _plasticity(evidence: Evidence) -> ModelWarning | None:
     if hardness is None or evidence.problem.terms.plastic:
         return None
     index = pair.reduced_modulus / hardness * roughness_slope(evidence.scene, evidence.problem.grid)
+    below = "pressures stay below the hardness on these elements, and may reach it on finer ones"
+    advice = below if evidence.plan.requested.plastic is None else "set plastic = true"
     text = f"plasticity index {index:.3g} of Eq. (12) reaches 1: contact is no longer purely elastic; "
-    text += "set plastic = true"
-    return ModelWarning(Limit.PLASTICITY, index, _PLASTICITY, text) if index >= _PLASTICITY else None
+    return ModelWarning(Limit.PLASTICITY, index, _PLASTICITY, text + advice) if index >= _PLASTICITY else None
 
 
 def _hardness(evidence: Evidence) -> ModelWarning | None:
@@ -255,10 +256,7 @@ def _correlation(evidence: Evidence) -> ModelWarning | None:
 
 def _data(evidence: Evidence) -> ModelWarning | None:
     """Measured heights and arrays are sampled, not averaged."""
-    scene, grid = evidence.scene, evidence.problem.grid
-    parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
-    pitches = [pitch for part in parts if (pitch := part.pitch(grid.lengths)) is not None]
-    points = max(grid.spacings) / min(pitches, default=math.inf)
+    points = max(evidence.problem.grid.spacings) / (evidence.scene.pitch or math.inf)
     text = (
         f"{points:.2g} points of a surface's data per element: points between the elements' centres are not "
         "sampled, and error bars do not include them"

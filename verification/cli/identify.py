@@ -7,8 +7,8 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.grids import DEFAULT_TEXT, default_grid
 from verification.cli.options import (
+    DEFAULT_GRID,
     SCENE,
     Options,
     loads,
@@ -38,7 +38,7 @@ load is not used, its [tolerances] add to the uncertainty. With --store a stoppe
 OPTIONS: Options = {
     "scene": SCENE,
     "data": option("the measured friction", metavar="DATA.csv", type=Path),
-    "--grid": option(f"elements along the longer side ({DEFAULT_TEXT})", metavar="M", type=int),
+    "--grid": option(f"elements along the longer side ({DEFAULT_GRID})", metavar="M", type=int),
     "--loads": option("loads (N) at which mu is predicted", metavar="P,P,...", type=loads, default=()),
     "--fit": option("fit the hardness as well", metavar="NAME,...", type=names, default=()),
     "--realisations": option("draws of random surfaces (default 1)", metavar="N", type=int, default=1),
@@ -64,7 +64,7 @@ def run(options: argparse.Namespace) -> int:
         found = identify(
             scene,
             rows,
-            options.grid or default_grid(scene),
+            options.grid,
             loads=options.loads,
             fit=options.fit,
             tolerances=tolerances,

@@ -22,6 +22,7 @@ from verification.output.files import try_out
 Parsers: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"
 Options: TypeAlias = dict[str, Mapping[str, Any]]
 """Keywords of `argparse.ArgumentParser.add_argument` by an option's name."""
+DEFAULT_GRID = "default 256; of a measured map its own points, up to 512"  # `refimpl.Scene.default_grid`
 Value = TypeVar("Value")
 
 

@@ -50,8 +50,9 @@ message of a failed run is printed, and the status of the others stands in their
   [vary]                      # any of: grid load upper_rms lower_rms correlation_length tau beta
   grid = [128, 256]           #   sliding_direction sliding_offset (SI, rad), and by full name
                               #   numbers of surfaces and materials, seeds, and the path of
-                              #   a measured surface (relative to this file); grid is needed
-                              #   unless [solve] has an accuracy; one value needs no list
+                              #   a measured surface (relative to this file); without a grid
+                              #   256 elements, of measured maps each run's own points, up to
+                              #   512; one value needs no list
   lower_rms = [0.504e-6, 1.68e-6]
   "lower.surface[0].lay" = [0.0, 0.7854]
   [solve]                     # optional: method, oblique, slope_correction, tolerance,

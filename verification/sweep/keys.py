@@ -47,7 +47,7 @@ _TEXTS: Mapping[str, tuple[str, str]] = {
 }
 """Type and meaning of each key."""
 _AXES: Mapping[str, tuple[str, str]] = {
-    "grid": ("", "elements along the longer side; needed unless `[solve]` has an accuracy"),
+    "grid": ("", "elements along the longer side; not set: 256, or each map's own points, up to 512"),
     "upper_rms": ("m", "rms height of the upper body's roughness; 0 removes that roughness"),
     "lower_rms": ("m", "rms height of the lower body's roughness; 0 removes that roughness"),
     "correlation_length": ("m", "that of all Gaussian parts"),

@@ -27,8 +27,8 @@ COORDINATES = (
     "sliding_direction", "sliding_offset", "tau", "beta", "parameters",
 )  # fmt: skip
 """What tells the runs of one study apart; SI units and rad, None where a scene has no such thing, and for the
-grid where an accuracy is requested. ``parameters`` is the JSON text of the numbers of materials and surfaces
-that the study varies by their full names.
+grid where none is given. ``parameters`` is the JSON text of the numbers of materials and surfaces that the
+study varies by their full names.
 """
 
 _OF_A_RUN = (
@@ -50,7 +50,7 @@ CERTIFIED = (rf.Status.CONVERGED.value, rf.Status.CYCLED.value)
 """Statuses of rows whose numbers are solutions, as `refimpl.Solution.converged` has it."""
 
 UNKNOWN_GRID = 256
-"""Elements a side that runs with a requested accuracy count as."""
+"""Elements a side that runs without a given grid count as."""
 
 Row = dict[str, Any]
 

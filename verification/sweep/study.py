@@ -72,7 +72,7 @@ class Study:
 
     @property
     def finest(self) -> int:
-        """Elements along the longer side of the finest grid; a usual one with an accuracy."""
+        """Elements along the longer side of the finest grid; a usual one where none is given."""
         return int(max(self.vary.get("grid", (UNKNOWN_GRID,))))
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -153,3 +154,37 @@ def test_the_widest_tables_and_the_least_rows() -> None:
     """Neighbouring loads 300 apart and mu 50 apart; a direction makes another case."""
     check_rows([Row(1.0, 0.01, 0.1), Row(300.0, 0.5, 0.1), Row(90e3, 0.0, 0.1)], 3)
     check_rows([Row(1.0, 0.3, 0.1), Row(1.0, 0.3, 0.1, sliding_direction=1.0)])
+
+
+COLUMNS = {
+    "load": [5, 80.5], "mu": [0.2, 0.15], "u_mu": [0.02, 1e-2], "sliding_offset": [float("nan"), 1e-6],
+    "lower_file": [None, "b.npy"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("frame", ["dict", "pandas"])
+def test_a_data_frame_has_the_rows_of_its_file(tmp_path: Path, frame: str) -> None:
+    table = COLUMNS if frame == "dict" else pytest.importorskip("pandas").DataFrame(COLUMNS)
+    text = f"load,mu,u_mu,sliding_offset,lower_file\n5,0.2,0.02,,\n80.5,0.15,0.01,1e-6,{tmp_path}/b.npy\n"
+    expected = read_rows(_written(tmp_path, text))
+    assert read_rows(table) == (expected[0], replace(expected[1], lower_file="b.npy"))
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        (COLUMNS | {"load": [5, "80 N"]}, "data row 2: load = '80 N': expected a finite number in N"),
+        (COLUMNS | {"load": [None, 80]}, "data row 1: load = '': expected a finite number in N"),
+        (COLUMNS | {"force": [1, 2]}, "data column = 'force': expected columns load,mu,u_mu or"),
+        ([5, 80], "data = 'list': expected a CSV file's path, or a data frame"),
+        (3.0, "data = 'float': expected a CSV file's path, or a data frame"),
+    ],
+)
+def test_what_a_data_frame_lacks_is_named_by_its_row(table: object, said: str) -> None:
+    with pytest.raises(InputError, match=f"^{re.escape(said)}"):
+        read_rows(table)
+
+
+def test_an_identification_takes_rows_alone() -> None:
+    with pytest.raises(InputError, match=r"'dict': expected at most 1000 rows as of read_rows"):
+        check_rows(COLUMNS)  # type: ignore[arg-type]  # a table, in place of its rows
