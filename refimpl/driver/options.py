@@ -8,6 +8,7 @@ from refimpl.accuracy.refinement import check_accuracy, tolerance_for
 from refimpl.driver.limits import Limits
 from refimpl.errors import InputError, keep_doubles, require_number, require_one_of, size_text
 from refimpl.grid import Grid
+from refimpl.measured.areal_parameters import implausible_slope
 from refimpl.model.friction import is_frictionless
 from refimpl.model.problem import Terms
 from refimpl.planning.plan import DECISION_GRID, METHODS, Method, Plan, make_plan, memory_of
@@ -93,8 +94,21 @@ class Options:
             "(1 HV is 9.81e6 Pa; or plastic = false)"
         )
         if max(scene.lengths) < _SMALL_DOMAIN:
-            allowed += f"; the domain is only {size_text(scene.lengths)} m: units of the map, or its pixel?"
+            size = f"the domain is only {size_text(scene.lengths)} m (units of the map, or its pixel?)"
+            allowed = f"{size}; {allowed}"
+        if scene.load > most:
+            self._refuse_doubtful_maps()
         require_number("load", scene.load, allowed, at_most=most)
+
+    def _refuse_doubtful_maps(self) -> None:
+        """Refuse a map whose slopes say that its unit or pixel is wrong, before its load is."""
+        for name in ("lower", "upper"):
+            for k, part in enumerate(self.scene.parts(name)):
+                known = part.pitch(self.scene.lengths) is not None
+                for doubt in implausible_slope(*part.data_points(self.solve_grid)) if known else ():
+                    said = f"{doubt} (its {size_text(self.scene.lengths)} m do not bear {self.scene.load} N)"
+                    allowed = f"heights of plausible slopes: {said}"
+                    raise InputError(f"{name}.surface[{k}]", part.label, allowed)
 
     def _check_strains(self) -> None:
         """Refuse tau, loads and approaches beyond a strain of 1e6: squares of slopes would overflow."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from refimpl.grid import Array, Mask
-from refimpl.measured.missing_points import fill
 from refimpl.measured.preparation import (
     MAD_TO_RMS,
     NEIGHBOURHOOD,
@@ -19,12 +18,13 @@ _LEAST_LINES = 16  # lines from which their steps have a spread
 _ROUNDING = 1e-9  # share of the rms height
 
 
-def standing_out(z: Array, pixel: tuple[float, float]) -> tuple[str, ...]:
-    """Return a note on the points, and one on the lines along each axis, that stand out; empty for none."""
-    known = np.isfinite(z)
+def standing_out(z: Array, known: Mask) -> tuple[str, ...]:
+    """Return a note on the points, and one on the lines along each axis, that stand out; empty for none.
+
+    ``known`` : points that the file has; the others are filled
+    """
     if not known.any():
         return ()
-    z = z if known.all() else fill(z, pixel)
     points, notes = spikes(z, known), []
     if points:
         notes.append(

@@ -105,8 +105,8 @@ def _plasticity(evidence: Evidence) -> ModelWarning | None:
     index = pair.reduced_modulus / hardness * roughness_slope(evidence.scene, evidence.problem.grid)
     below = "pressures stay below the hardness on these elements, and may reach it on finer ones"
     advice = below if evidence.plan.requested.plastic is None else "set plastic = true"
-    text = f"plasticity index {index:.3g} of Eq. (12) reaches 1: contact is no longer purely elastic; {advice}"
-    return ModelWarning(Limit.PLASTICITY, index, _PLASTICITY, text) if index >= _PLASTICITY else None
+    text = f"plasticity index {index:.3g} of Eq. (12) reaches 1: contact is no longer purely elastic; "
+    return ModelWarning(Limit.PLASTICITY, index, _PLASTICITY, text + advice) if index >= _PLASTICITY else None
 
 
 def _hardness(evidence: Evidence) -> ModelWarning | None:

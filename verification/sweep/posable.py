@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Any
 
 from refimpl.driver.options import Options
-from refimpl.errors import InputError
+from refimpl.errors import InputError, size_text
 from refimpl.model.problem import Terms
 from refimpl.planning.plan import memory_of
 from refimpl.scene.scene import Scene
-from refimpl.scene.scene_file import scene_from_dict
-from verification.sweep.study import Study
+from refimpl.scene.scene_file import scene_from_dict, scene_to_dict
+from verification.sweep.study import Study, measured_paths
 
 FINEST = 256  # elements a side that heights are sampled on: 0.01 s, and 0.4 % from where the domain ends
 _SWITCHES = ("oblique", "slope_correction")
@@ -77,10 +77,19 @@ def check_memory(study: Study) -> None:
     )
 
 
-def covered_size(study: Study) -> tuple[float, float]:
-    """Return the largest rectangle (m) that all measured surfaces cover over all offsets of a study."""
-    x, y = zip(*(scene.lengths for scene in _closest(study)), strict=True)
-    return min(x), min(y)
+def covered_size(study: Study) -> tuple[tuple[float, float], str]:
+    """Return the largest rectangle (m) that all measured surfaces cover over all offsets of a study.
+
+    The text names the files of the smallest scene, where another is larger.
+    """
+    scenes = list(_closest(study))
+    least, most = (choose(scenes, key=lambda scene: math.prod(scene.lengths)) for choose in (min, max))
+    size = min(scene.lengths[0] for scene in scenes), min(scene.lengths[1] for scene in scenes)
+    if least.lengths == most.lengths:
+        return size, ""
+    files = (Path(path).name for path in measured_paths(scene_to_dict(least)))
+    shown = ", ".join(dict.fromkeys(files))
+    return size, f", by {shown}; the largest scene has {size_text(most.lengths)} m"
 
 
 def _closest(study: Study) -> Iterator[Scene]:

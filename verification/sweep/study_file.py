@@ -83,10 +83,9 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path(), *, keep_goi
     study = _with_usable_files(study, keep_going)
     study = replace(study, files=(scene_file, *map(Path, study.measured)))
     if "side" not in scene and "size" not in scene:
-        x, y = posable.covered_size(study)
-        note = (
-            f"no size given: {x:.6g} x {y:.6g} m, the largest that all measured surfaces cover at all offsets"
-        )
+        (x, y), limited = posable.covered_size(study)
+        covered = "the largest that all measured surfaces cover at all offsets"
+        note = f"no size given: {x:.6g} x {y:.6g} m, {covered}{limited}"
         study = replace(study, scene=scene | {"size": [x, y]}, notes=(note,))
     _check(study)
     return study
