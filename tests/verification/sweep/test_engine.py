@@ -14,10 +14,9 @@ from typing import Any
 import pytest
 
 from refimpl.errors import InputError
-from tests.verification.cli.children import Ended, one_line
+from tests.verification.cli.children import Ended, finished, one_line
 from tests.verification.cli.commands import refused, shown
 from tests.verification.sweep.own_cluster import cluster
-from verification.cases.paper.sweeps import finished
 from verification.framework.threads import THREADS, limited_to_one_thread
 from verification.sweep import engine
 from verification.sweep.export import to_csv
