@@ -115,7 +115,7 @@ def peak_memory() -> int:
 
 
 def return_free_memory() -> None:
-    """Give back to the system what the C library keeps of freed arrays below 32 MB (glibc alone)."""
+    """Give the system back what the C library keeps of freed arrays below 32 MB (only glibc does)."""
     with suppress(OSError, AttributeError, TypeError):
         ctypes.CDLL(None).malloc_trim(0)
 
@@ -159,7 +159,7 @@ def limit_process(seconds: float, memory: int) -> None:
 
 @contextmanager
 def interrupts_blocked() -> Iterator[None]:
-    """Keep interrupts from processes started in the block: one sent to the whole group is for this process.
+    """Processes started in the block get no interrupts: one sent to the whole group is for this process.
 
     On Windows a console sends them to all.
     """

@@ -11,19 +11,13 @@ from refimpl.errors import InputError, size_text
 from refimpl.grid import Array
 from refimpl.measured.reading import MAX_POINTS, UNITS, Overrides, RawHeights, checked
 
-POINT = 3  # columns
+POINT = 3  # columns; a map has four at least
 _SAME_PITCH = 0.01  # relative difference of two pitches: digits of a given one
 _UNIT = re.compile(rf"(?<!\w)({'|'.join(UNITS)})(?!\w)")
 
 
-def is_triples(rows: Array) -> bool:
-    """Return True if the rows are points x, y, z: a map has four columns at least."""
-    return bool(rows.shape[1] == POINT)
-
-
 def on_grid(path: Path, points: Array) -> tuple[Array, tuple[float, float]]:
-    """Return the heights ``[i, j]`` of points ``(x, y, z)`` and the pitch of their grid; absent points are
-    NaN.
+    """Heights ``[i, j]`` of points ``(x, y, z)`` and the pitch of their grid; absent points are NaN.
 
     The pitch is the median distance between neighbouring distinct coordinates. Raises InputError for a line
     scan, for points more than a tenth of the pitch off the grid and for two points in one place.
@@ -82,7 +76,7 @@ def _check_pitch(path: Path, pitch: tuple[float, float], stated: float, given: O
 def points_map(
     path: Path, points: Array, given: Overrides, header: tuple[str, ...] = (), notes: tuple[str, ...] = ()
 ) -> RawHeights:
-    """Return the map of points x, y, z in the given unit, or in the three that a line of the header names."""
+    """The map of points x, y, z in the given unit, or in the three that a line of the header names."""
     found: list[list[str]] = [_UNIT.findall(line) for line in header]
     named = next((units for units in found if len(units) == POINT), None)
     own = given.unit or (named[-1] if named else None)
