@@ -17,7 +17,7 @@ from refimpl.measured.reading import RawHeights
 from refimpl.surfaces.surface import positive
 
 NEIGHBOURHOOD = 5  # points an axis
-_RANK = 20  # of 25 points: the 80th percentile; four or five of them may be outliers
+_RANK = 20  # rank among 25 points: the 80th percentile; four or five of them may be outliers
 PERCENTILE_TO_RMS = 1.2816  # factor from the 80th percentile of absolute Gaussian distances to their rms
 MAD_TO_RMS = 1.4826  # from the median of absolute Gaussian distances to their rms
 _ROUNDING = 1e-9  # share of the rms height

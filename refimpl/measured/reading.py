@@ -104,7 +104,7 @@ class Overrides:
 
 
 def read_or_refuse(path: Path, load: Callable[[], T]) -> T:
-    """``load()``, whose failures of any kind become one line of `InputError`."""
+    """Return ``load()``, whose failures of any kind become one line of `InputError`."""
     try:
         return load()
     except InputError:
@@ -114,7 +114,7 @@ def read_or_refuse(path: Path, load: Callable[[], T]) -> T:
 
 
 def first_line(error: object) -> str:
-    """One line of an error or a warning: its kind and its own words."""
+    """Return one line of an error or a warning: its kind and its own words."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()] or [""]
     return f"{type(error).__name__}: {printable(lines[0])[:160]}"
 

@@ -1,4 +1,4 @@
-"""Frictionless contact of a paraboloid whose pressure is capped at a hardness, from rings of uniform pressure.
+"""Frictionless contact of a paraboloid, its pressure capped at a hardness, from rings of uniform pressure.
 
 Sources: Johnson 1985, section 3.4 (the displacement of a uniformly loaded circle, in complete elliptic
 integrals). The two bounds are found by exchanging all rings that break a sign, with the approach as an

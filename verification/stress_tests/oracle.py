@@ -7,8 +7,8 @@ residuals are taken in 34 digits at last, where every step leaves ten digits mor
 from the one under test is sought by continuation in the load, or in beta.
 
 At fixed slopes and a fixed active set of tau the problem has one solution (`positive_definite`), so where the
-search starts cannot bend the answer. Where friction is strong, slopes may stand in several states: one that is
-right is one of these to the last digit, which does not prove it the only one. tau's active set is that of the
+search starts cannot bend the answer. Where friction is strong, slopes may stand in several states: a right one
+is one of these to the last digit, which does not prove it the only one. tau's active set is that of the
 returned traction; in a continuation it is the contact.
 """
 
@@ -214,7 +214,7 @@ class Oracle:
 
     def _refined(self, state: Guess, support: Mask) -> Exactly:
         """Residuals in digits, steps by the Jacobian in doubles."""
-        load, law, n = self.scene.load, self.scene.friction, self.n
+        load, law = self.scene.load, self.scene.friction
         with mp.workdps(DIGITS):
             state = state._replace(x=_exact(state.x[:, 0])[:, None])
             for _ in range(REFINEMENTS):

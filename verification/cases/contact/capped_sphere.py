@@ -1,4 +1,4 @@
-"""A sphere whose pressure is capped at the hardness: axisymmetric solution, plastic limits, published laws."""
+"""A sphere whose pressure is capped at the hardness: rings, plastic limits, published laws."""
 
 from __future__ import annotations
 
