@@ -7,8 +7,8 @@ residuals are taken in 34 digits at last, where every step leaves ten digits mor
 from the one under test is sought by continuation in the load, or in beta.
 
 At fixed slopes and a fixed active set of tau the problem has one solution (`positive_definite`), so where the
-search starts cannot bend the answer. Where friction is strong, slopes may stand in several states: a right one
-is one of these to the last digit, which does not prove it the only one. tau's active set is that of the
+search starts cannot bend the answer. Where friction is strong, slopes may stand in several states: a right
+one is one of these to the last digit, which does not prove it the only one. tau's active set is that of the
 returned traction; in a continuation it is the contact.
 """
 
