@@ -188,11 +188,11 @@ def test_docstrings_of_functions_begin_with_an_imperative(package: str) -> None:
 
 
 def summaries(package: str) -> Iterator[tuple[str, str]]:
-    """Yield place and docstring of each public function of a package that is no case and no property."""
+    """Yield place and docstring of each function of a package that is no case and no property."""
     for path in sorted((ROOT / package).rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             text = ast.get_docstring(node) if isinstance(node, ast.FunctionDef) else None
-            if isinstance(node, ast.FunctionDef) and text and not node.name.startswith("_"):
+            if isinstance(node, ast.FunctionDef) and text:
                 marks = " ".join(ast.unparse(mark) for mark in node.decorator_list)
                 if not re.search("case|family|property|given|invariant|in_both_tiers", marks):
                     yield f"{path.relative_to(ROOT)}:{node.lineno}", text

@@ -86,7 +86,7 @@ def own_form(a: Arithmetic, kernel: Any, offset: float) -> list[Any] | None:
 
 
 def _nodes(order: int) -> tuple[Any, Any]:
-    """Gauss-Legendre nodes and weights in long double, by Newton's method in 40 digits."""
+    """Return the Gauss-Legendre nodes and weights in long double, by Newton's method in 40 digits."""
     with mp.workdps(40):
         nodes = [
             mp.findroot(lambda z: mp.legendre(order, z), float(z0))
@@ -109,7 +109,7 @@ def lost(arithmetic: Arithmetic, found: list[Any] | None, exact: list[Any]) -> f
 
 
 def _as_mpf(value: Any) -> Any:
-    """Exactly: a long double splits into two doubles."""
+    """Convert exactly: a long double splits into two doubles."""
     if isinstance(value, mp.mpf):
         return value
     high = float(value)
