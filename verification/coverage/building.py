@@ -64,6 +64,7 @@ def solve_all(path: Path, seeds: Iterable[int], kinds: Iterable[str] = tuple(CLA
     known = {(one["kind"], one["seed"]) for one in _records(path)}
     todo = [(kind, seed) for seed in seeds for kind in kinds if (kind, seed) not in known]
     progress = Progress(len(todo))
+    path.parent.mkdir(parents=True, exist_ok=True)
     with appending(path) as lines:
         for kind, seed in todo:
             lines.write(json.dumps(_solved(kind, seed)) + "\n")
