@@ -14,7 +14,8 @@ from tests.documents import ROOT, agree, blocks, commands, run
 DOCS = sorted((ROOT / "docs").glob("*.md"))
 
 
-LONG = {"notebooks", "read-the-report"}  # a whole notebook, and the report of all committed results
+LONG = {"notebooks", "read-the-report", "friction-with-an-error-bar", "reference-data"}
+"""Pages of 5 seconds and more: a whole notebook, the report of all results, fine grids, an export."""
 
 
 @pytest.mark.parametrize(

@@ -28,7 +28,6 @@ from refimpl.driver.options import Options
 from refimpl.grid import Grid
 from refimpl.model.state import Status
 from refimpl.planning.plan import Plan
-from refimpl.planning.term_effects import effects_in
 from refimpl.scene.discretise import Discretiser
 from refimpl.solution.cost import Cost, total_cost
 from refimpl.solution.data_error import data_error, finest_by_data
@@ -150,7 +149,7 @@ class _Refinement:
         return size, refusal or ("" if enough else f"{size} elements a side do not suffice")
 
     def features_at(self, M: int) -> GridFeatures:
-        """Solve on a grid, no coarser than the last; again if neglected terms exceed their budget.
+        """Solve on a grid, no coarser than the last.
 
         Raises `Unfinished` where the solve does not converge and that on a coarser grid did.
         """
@@ -172,16 +171,8 @@ class _Refinement:
         opened = len(self.costs) > len(FIRST_GRIDS)
         if opened and start is not None and solved.status not in _CONVERGED:
             raise Unfinished(f"{plan.grid} elements: {solved.status.value}")
-        self.plan = solved.plan  # with the cap, if it was restored
+        self.plan = solved.plan  # with what was restored
         self.last = solved
-        effects = effects_in(
-            plan.neglected, solved.problem, solved.state.pressure, plan.contact, plan.decided_on
-        )
-        sizes = {name: effect.larger for name, effect in effects.items()}
-        if sum(sizes.values()) > self.plan.budget:
-            largest = max(sizes, key=lambda name: sizes[name])
-            self.plan = self.plan.restore(solved.problem, largest)
-            return self.features_at(M)
         return solved.features
 
     def restored(self) -> GridFeatures | None:

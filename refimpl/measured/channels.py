@@ -26,7 +26,7 @@ def choose(path: Path, form: str, reader: Any, given: Overrides) -> tuple[int, A
     channels = list(reader.channels)
     names = [str(c.name) for c in channels]
     maps = [] if given.channel is not None else _maps(channels, reader, form in ARRAYS)
-    if given.channel is None and not maps:
+    if given.channel is None and not maps and len(names) != 1:
         raise InputError("path", str(path), f"a map of heights (found: {_listed(names) or 'no channel'})")
     sure = maps and (form not in ARRAYS or len(maps) == 1)
     index = maps[0] if sure else chosen(path, names, given.channel)

@@ -176,7 +176,7 @@ class Inspection:
             "curves": _listed(self.curves()),
             "notes": [
                 *self.surface.prepared.notes,
-                *standing_out(self.z, self.pixel),
+                *standing_out(self._filled, np.isfinite(self.z)),
                 *implausible_slope(self.z, self.pixel),
             ],
         }

@@ -274,7 +274,8 @@ class MeasuredSurface(Surface):
                 f"{name}: level {self.level!r} fitted in the window (slopes {tilt}{bent}) and subtracted; "
                 f"rms height there {np.nanstd(z):.4g} m before, {np.nanstd(rest):.4g} m after"
             )
-        said += [f"{name}: {note}" for note in (*standing_out(rest, pixel), *implausible_slope(rest, pixel))]
+        doubts = *standing_out(fill(rest, pixel), np.isfinite(rest)), *implausible_slope(rest, pixel)
+        said += [f"{name}: {note}" for note in doubts]
         if window.lost:
             said.append(
                 f"{name}: {window.lost} of {window.size} points in the window are missing, filled in here"

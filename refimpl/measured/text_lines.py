@@ -1,4 +1,4 @@
-"""Lines of a text file: its encoding, spellings of missing points that begin like comments, Wyko's blocks."""
+"""Lines of a text file: encoding, missing points that begin like comments, header words, blocks of Wyko."""
 
 from __future__ import annotations
 
@@ -16,6 +16,31 @@ _MISSING = re.compile(rf"(?<![^\s,;])(?:{_HASHED})(?![^\s,;])", re.IGNORECASE)
 WYKO = "Wyko ASCII Data File Format"
 _WYKO_BLOCK = re.compile(r"(?!bad\b)([a-z]\w*)\s+\d+\s+\d+\b", re.IGNORECASE)
 WYKO_HEIGHTS = ("RAW_DATA", "OPD", "Raw", "SAMPLE_DATA")  # others are intensities and processed arrays
+
+# The library's words, and those of Gwyddion and of profilometers in German, French and Spanish
+_WORDS = {
+    "Channel": "channel|kanal|canal",
+    "Width": "width|breite|largeur|anchura|ancho",
+    "Height": "height|höhe|hoehe|hauteur|altura|alto",
+    "Value units": r"value units?|(?:werte?|z)-?einheit(?:en)?|einheiten|unités"
+    r"|unités? des? valeurs?|unidad(?:es)? de(?: los)? valor(?:es)?",
+}
+_STATED = re.compile(
+    "#?\\s*(?:" + "|".join(f"({spellings})" for spellings in _WORDS.values()) + ")"
+    r"(?:\s*[\[(](\w+)[\])])?\s*[:=;\t]\s*(.*)",
+    re.IGNORECASE,
+)
+_DECIMAL_COMMA = re.compile(r"^([-+]?\d+),(?=\d)")
+
+
+def in_english(line: str) -> str:
+    """A header's line as the library knows it: English words, a decimal point, the unit at the end."""
+    if (found := _STATED.fullmatch(line)) is None:
+        return line
+    word = next(word for word, spelled in zip(_WORDS, found.groups(), strict=False) if spelled)
+    *_, unit, value = found.groups()
+    value = _DECIMAL_COMMA.sub(r"\1.", value.replace(";", " ").strip())
+    return f"# {word}: {value} {unit or ''}".rstrip()
 
 
 def encoding_of(path: Path) -> str:

@@ -22,7 +22,7 @@ from refimpl.grid import Array
 from refimpl.measured.decimal_marks import refuse_ambiguous
 from refimpl.measured.point_tables import POINT
 from refimpl.measured.table_labels import is_title, without_labels, word_in_corner
-from refimpl.measured.text_lines import NOT_MEASURED, encoding_of, lines_of
+from refimpl.measured.text_lines import NOT_MEASURED, encoding_of, in_english, lines_of
 
 MAX_HEADER = 400  # lines before the numbers
 _SAMPLE = 50  # lines by whose entries labels of rows and columns are known
@@ -42,6 +42,11 @@ class TextTable:
     header: tuple[str, ...]
     notes: tuple[str, ...]
     comments: tuple[tuple[int, str], ...] = ()
+
+    @property
+    def is_sized(self) -> bool:
+        """True if the header states the edges of an image, as Gwyddion does."""
+        return {"# Width", "# Height"} <= {line.partition(":")[0] for line in self.header}
 
     def normalised(self) -> bytes:
         """Header, numbers and comments in UTF-8, with blanks between and decimal points."""
@@ -78,7 +83,7 @@ def read_table(path: Path) -> TextTable:
         count = 0
         for number, line in islice(lines_of(path, encoding), start + titled, None):
             if line.startswith("#") and not layout.is_row(line, width):
-                comments.append((count, line))
+                comments.append((count, in_english(line)))
             elif line.strip() or len(layout.cells(line)) == width:  # tabs alone: missing points
                 if layout.splits_row(line):
                     allowed = f"comments that begin a line or follow a row (line {number}: {line[:40]!r})"
@@ -97,7 +102,7 @@ def read_table(path: Path) -> TextTable:
         notes = [_EMPTY.format("last")]
     rows[np.isinf(rows)] = np.nan
     _refuse_blocks(path, rows, blanks)
-    header = tuple(line for line in lines[:start] if line.strip(",; \t"))
+    header = tuple(in_english(line) for line in lines[:start] if line.strip(",; \t"))
     if stated := _NO_DATA.search("\n".join(header)):
         absent = rows == float(stated[2])
         rows[absent] = np.nan

@@ -41,6 +41,8 @@ def resultants(pressure: Array, traction: Array, slopes: Slopes, element_area: f
 
 def normal_terms(pressure: Array, traction: Array, slopes: Slopes, element_area: float) -> float:
     """Return the sum of the sizes of the terms of Eq. (2) (N), whose difference is N."""
+    if slopes.is_flat:
+        return float(np.sum(np.abs(pressure))) * element_area
     sizes = np.abs(pressure) * slopes.cos_x + np.abs(traction * slopes.sin_x)
     return float(np.sum(sizes * slopes.cos_y)) * element_area
 

@@ -196,6 +196,14 @@ class Problem:
         offset = float(np.sum(shear_offset * slopes.sin_x * slopes.cos_y)) * self.grid.element_area
         return weights, offset
 
+    def largest_load(self, slopes: Slopes) -> float:
+        """Return what elements at the hardness carry at most on given slopes (N); infinite without a cap."""
+        if math.isinf(self.cap):
+            return math.inf
+        full = np.full(self.gap.shape, self.cap)
+        weights, offset = self.load_weights(slopes, self.friction.shear_offset(full, full > 0))
+        return float(np.sum(weights * full)) * self.grid.element_area - offset
+
     def nominal_load(self, normal_force: float) -> float:
         """Return the load of Eq. (4): the prescribed one, or the normal force at a prescribed approach
         (N)."""

@@ -7,7 +7,7 @@ are not transformed, and columns of the result outside the target are not transf
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -19,6 +19,8 @@ from refimpl.grid.window import padded_length
 from refimpl.operators.kernel_tables import signed_table, unit_table
 from refimpl.operators.symmetric import even_hat, odd_hat
 from refimpl.operators.transforms import Complex, fourier, threads
+
+_COLUMNS = 256  # columns transformed at a time
 
 
 @dataclass
@@ -190,24 +192,26 @@ class FFTInfluence:
     def _forward(self, source: Array) -> Complex:
         (N, K), (along, place) = self._padded, self._from
         workers = threads(self._points)
-        self._columns[along] = source
         spectrum = np.empty((N // 2 + 1, K), dtype=np.complex128)
-        if place.start:
-            spectrum[:, : place.start] = 0
+        spectrum[:, : place.start] = 0
         spectrum[:, place.stop :] = 0
-        fourier.columns(self._columns, spectrum[:, place], workers)
+        padded = np.zeros((N, min(_COLUMNS, source.shape[1])))
+        for block in _blocks(source.shape[1]):
+            columns = source[:, block]
+            padded[along, : columns.shape[1]] = columns
+            at = slice(place.start + block.start, place.start + block.stop)
+            fourier.columns(padded[:, : columns.shape[1]], spectrum[:, at], workers)
         return fourier.rows(spectrum, workers, forward=True)
 
     def _backward(self, spectrum: Complex) -> Array:
-        N, workers = self._padded[0], threads(self._points)
+        (N, _), (along, place) = self._padded, self._to
+        workers = threads(self._points)
         spectrum = fourier.rows(spectrum, workers, forward=False)
-        found: Array = fourier.columns_back(spectrum[:, self._to[1]], N, workers)[self._to[0]]
+        found = np.empty(self.target.shape)
+        for block in _blocks(found.shape[1]):
+            at = slice(place.start + block.start, place.start + block.stop)
+            found[:, block] = fourier.columns_back(spectrum[:, at], N, workers)[along]
         return found
-
-    @cached_property
-    def _columns(self) -> Array:
-        """The source's columns, zero but for the source."""
-        return np.zeros((self._padded[0], self.source.shape[1]))
 
 
 class WholeGridInfluence(FFTInfluence):
@@ -221,9 +225,15 @@ class WholeGridInfluence(FFTInfluence):
         spectrum = self._forward(source[self.source.slices])
         spectrum *= hat
         del hat
-        for spent in ("_columns", "_normal_hat", "_shear_hat", "_across_hat"):
+        for spent in ("_normal_hat", "_shear_hat", "_across_hat"):
             vars(self).pop(spent, None)
         return self._backward(spectrum)
+
+
+def _blocks(count: int) -> Iterator[slice]:
+    """Columns in blocks, so that no second array of all of them is needed."""
+    for start in range(0, count, _COLUMNS):
+        yield slice(start, min(start + _COLUMNS, count))
 
 
 def _padded(source: Window, target: Window) -> tuple[int, int]:

@@ -10,7 +10,9 @@ gradient g carries the mean pressure ``0.6 E* g``: of Hertz's paraboloid this is
 
 In contact ``u_lower + u_upper = approach - h``, and each body takes its share of that by its compliance:
 without shear the common surface there is the mean of both heights, each weighted by the other body's
-compliance (the rigid body's own shape, if one is rigid).
+compliance (the rigid body's own shape, if one is rigid). Beside the contact each body ends at its own side of
+the clearance g, and the mean of both deformed surfaces is that same sum plus ``(upper share - 1/2) g``: where
+contact ends at a wall, the slope across its edge is this jump's.
 """
 
 from __future__ import annotations
@@ -79,21 +81,24 @@ def expected_contact(problem: Problem) -> ExpectedContact:
     stiffness = _STIFFNESS * modulus * dA
     if problem.load is not None:
         contact = _bearing(coarse, stiffness, problem.load)
-        elements = int(np.count_nonzero(contact))
-        mean_pressure = problem.load / (elements * dA)
+        mean_pressure = problem.load / (int(np.count_nonzero(contact)) * dA)
     else:
         # half of what interferes: a sphere's contact circle has half the area of its interference
         elements = max(1, int(np.count_nonzero(gap < (problem.approach or 0.0))) // 2)
         contact = _first(_rising(gap), elements, gap)
+        elements = int(np.count_nonzero(contact))
         squares = float(_gradient_squared(coarse)[contact].sum())
         mean_pressure = stiffness * math.sqrt(squares * elements) / (elements * dA)
         mean_pressure = max(mean_pressure, _LEAST * modulus)
+    elements, level = int(np.count_nonzero(contact)), float(gap[contact].max())
     # a sphere's gap at the contact's edge is half the approach
-    approach = problem.approach or 2 * float(gap[contact].max())
+    approach = problem.approach or 2 * level
     near = gap < 2 * approach
     window = Window.around(near, margin=1).shape if near.any() else (0, 0)
     seen = _FromHeights(approach, *_symmetries(coarse, problem), window)
-    expectation = _described(coarse, contact, np.ones(elements), mean_pressure, _PEAKED * mean_pressure, seen)
+    clearance = np.maximum(gap - level, 0.0)
+    pressures = mean_pressure, _PEAKED * mean_pressure
+    expectation = _described(coarse, contact, np.ones(elements), clearance, pressures, seen)
     finer = [n / m for n, m in zip(problem.grid.shape, coarse.grid.shape, strict=True)]
     rows, columns = (math.ceil(f * n) for f, n in zip(finer, window, strict=True))
     return replace(expectation, elements=round(math.prod(finer) * elements), window=(rows, columns))
@@ -116,9 +121,10 @@ def _bearing(problem: Problem, stiffness: float, load: float) -> Mask:
 
 
 def _first(order: NDArray[np.intp], count: int, gap: Array) -> Mask:
-    """The first ``count`` elements of an order, or all."""
-    chosen = np.zeros(gap.shape, dtype=bool)
-    chosen.ravel()[order[:count]] = True
+    """The first ``count`` elements of an order, or all, and those as low as the last: a flat top touches as a
+    whole."""
+    last = order[min(count, order.size) - 1]
+    chosen: Mask = gap <= gap.flat[last] + _ROUNDING * np.ptp(gap)
     return chosen
 
 
@@ -134,15 +140,19 @@ def _gradient_squared(problem: Problem) -> Array:
     return squared
 
 
-def solved_contact(problem: Problem, pressure: Array, before: ExpectedContact) -> ExpectedContact:
-    """Return the description of a solved contact; what follows from the heights alone is that of
-    ``before``."""
+def solved_contact(
+    problem: Problem, pressure: Array, clearance: Array, before: ExpectedContact
+) -> ExpectedContact:
+    """Return the description of a solved contact by its pressure (Pa) and clearance (m).
+
+    What follows from the heights alone is that of ``before``.
+    """
     contact: Mask = pressure > 0
     loaded = pressure[contact]
     total = float(loaded.sum())
     seen = _FromHeights(before.approach, before.symmetric, before.mirrored, before.window)
     weighted = float(np.sum(loaded**2)) / total
-    return _described(problem, contact, loaded, total / loaded.size, weighted, seen)
+    return _described(problem, contact, loaded, clearance, (total / loaded.size, weighted), seen)
 
 
 class _FromHeights(NamedTuple):
@@ -155,18 +165,26 @@ class _FromHeights(NamedTuple):
 
 
 def _described(
-    problem: Problem, contact: Mask, loads: Array, mean_pressure: float, pressure: float, seen: _FromHeights
+    problem: Problem,
+    contact: Mask,
+    loads: Array,
+    clearance: Array,
+    pressures: tuple[float, float],
+    seen: _FromHeights,
 ) -> ExpectedContact:
-    """``loads`` weighs the elements in contact, in their order. Sums are not BLAS's: bits vary there."""
+    """``loads`` weighs the elements in contact, in their order; ``pressures`` are mean and weighted one.
+
+    Sums are not BLAS's: bits vary there.
+    """
     window = problem.grid.window_around(contact, margin=1)
     near, where = problem.windowed(window), contact[window.slices]
     lower, upper = near.heights
     weights = loads / loads.sum()
     share = problem.pair.upper_share
-    slopes = [_on(where, near, z) for z in (lower, upper)]
-    along, across = (share * below + (1 - share) * above for below, above in zip(*slopes, strict=True))
-    tangents = [tan for tan, _ in slopes]
-    elements = loads.size
+    tangents = [_on(where, near, z)[0] for z in (lower, upper)]
+    common = share * lower + (1 - share) * upper + (share - 0.5) * clearance[window.slices]
+    along, across = _on(where, near, common)
+    elements, (mean_pressure, pressure) = loads.size, pressures
     return ExpectedContact(
         elements=elements,
         patches=_patches(where, problem.grid.periodic),

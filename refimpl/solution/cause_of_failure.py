@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from refimpl.model.state import Status
@@ -23,15 +21,8 @@ def cause_of_failure(evidence: Evidence) -> str | None:
 
 def _hardness(evidence: Evidence) -> str | None:
     """A load beyond what all elements at the hardness carry on the slopes of the last state."""
-    problem, slopes = evidence.problem, evidence.state.slopes
-    if problem.load is None or math.isinf(problem.cap):
-        return None
-    everywhere = np.ones(problem.gap.shape, dtype=bool)
-    full = np.full(problem.gap.shape, problem.cap)
-    held = problem.friction.shear_offset(full, everywhere)
-    weights, offset = problem.load_weights(slopes, held)
-    most = float(np.sum(weights * full)) * problem.grid.element_area - offset
-    if problem.load <= most:
+    most = evidence.problem.largest_load(evidence.state.slopes)
+    if evidence.problem.load is None or evidence.problem.load <= most:
         return None
     return f"at the hardness everywhere the contact carries {most:.6g} N at most on its slopes"
 

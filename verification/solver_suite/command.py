@@ -110,7 +110,7 @@ class Command:
                     stdin=subprocess.DEVNULL,
                     stdout=output,
                     stderr=subprocess.STDOUT,
-                    start_new_session=True,
+                    process_group=0 if os.name == "posix" else None,
                 )
             except OSError as missing:
                 raise BadAnswer(f"cannot run {self.words[0]}: {missing.strerror}") from missing

@@ -14,7 +14,7 @@ import numpy as np
 
 from refimpl.grid import Array
 from verification.solver_suite import reference_solution
-from verification.solver_suite.covering import covering
+from verification.solver_suite.covering import stored
 from verification.solver_suite.dimensions import (
     BEYOND,
     CHANGED,
@@ -62,11 +62,11 @@ def seed_of(design: str, number: int) -> int:
 def _rows_of(designs: Mapping[str, Design], sizes: Sequence[int]) -> dict[str, tuple[dict[str, Any], ...]]:
     """Rows by name; each problem of a memory has the next one of the sizes."""
     made, next_size = {}, iter(sizes)
-    for name, (dimensions, seed, strength, tries, fixed) in designs.items():
-        found = [{**fixed, **row} for row in covering(dimensions, seed, strength=strength, tries=tries)]
+    for name, design in designs.items():
+        found = [{**design.fixed, **row} for row in stored(name, design)]
         if name == "tiny":
             found = [_bounded(row) for row in found]
-        if "changed" in dimensions:
+        if "changed" in design.dimensions:
             found = [row | {"elements": next(next_size)} for row in found]
         made[name] = tuple(sorted(found, key=lambda row: int(row["elements"])))
     return made

@@ -11,8 +11,8 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.signal import fftconvolve
 
 from refimpl.grid import Array, Grid, Mask
 from verification.exact.fourier import symbol_at
@@ -75,8 +75,12 @@ def by_pressure(problem: ContactProblem, pressure: Array) -> Array:
     compliance = 1 / (np.pi * problem.reduced_modulus)
     if is_large(problem):
         offsets = normal_offsets(problem.shape, _edges(problem))
-        return np.asarray(compliance * problem.spacing * fftconvolve(offsets, pressure, mode="valid"))
+        return compliance * problem.spacing * _convolved(offsets, pressure)
     return compliance * np.asarray(_matrix(problem, None) @ pressure.ravel()).reshape(pressure.shape)
+
+
+def _convolved(offsets: Array, field: Array) -> Array:
+    return np.asarray(scipy.signal.fftconvolve(offsets, field, mode="valid"))  # a second to import
 
 
 def displacement(problem: ContactProblem, pressure: Array) -> Array:
@@ -92,7 +96,7 @@ def displacement(problem: ContactProblem, pressure: Array) -> Array:
         return normal + _filtered(shear, both - symbol_at(*_waves(problem), E))
     if is_large(problem):
         offsets = shear_offsets(problem.shape, direction, _edges(problem))
-        moved = np.asarray(problem.spacing * fftconvolve(offsets, shear, mode="valid"))
+        moved = problem.spacing * _convolved(offsets, shear)
     else:
         moved = np.asarray(_matrix(problem, direction) @ shear.ravel()).reshape(shear.shape)
     return normal + c0 * moved

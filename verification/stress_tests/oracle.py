@@ -1,32 +1,35 @@
 """The discrete problem solved in 34 digits, started from the state under test (mpmath, tiny grids).
 
-Arrays stand before scalars in products: an mpf before an array asks for the array's text first, slowly.
+Unknowns are one number an element (its pressure in contact, its gap elsewhere, so that Eq. (6) holds but for
+signs), the tangents of the common surface, and the approach. Newton's method solves Eqs (2), (6) and (7)
+together, and exchanges elements whose number is negative. The Jacobian is exact, by complex steps in doubles;
+residuals are taken in 34 digits at last, where every step leaves ten digits more. A state that is not reached
+from the one under test is sought by continuation in the load, or in beta.
 
 At fixed slopes and a fixed active set of tau the problem has one solution (`positive_definite`), so where the
-search for it starts cannot bend the answer: the contact set under test is taken as a first guess, its linear
-equations are solved exactly, and elements are exchanged until every inequality of Eq. (6) holds exactly.
-Slopes are brought up to date until they stand. tau's active set is that of the returned traction. Where
-friction is strong, slopes may stand in several states: sought from the returned ones on, a state that is
-right is one of these to the last digit, which does not prove it the only one.
+search starts cannot bend the answer. Where friction is strong, slopes may stand in several states: one that is
+right is one of these to the last digit, which does not prove it the only one. tau's active set is that of the
+returned traction; in a continuation it is the contact.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
+from typing import Any, NamedTuple
 
 import mpmath as mp
 import numpy as np
-from numpy.typing import NDArray
 
 import refimpl as rf
-from refimpl.grid import Array
+from refimpl.grid import Array, Mask
 from verification.stress_tests import exact_operators as operators
 from verification.stress_tests.exact_operators import DIGITS, Exact
 
-EXCHANGES, SLOPE_UPDATES, MIXED = 80, 150, 5
-SETTLED = mp.mpf(10) ** -20  # relative change of pressure by an update of slopes: below a double's digits
-TIE = mp.mpf(10) ** (6 - DIGITS)  # share of the maximum pressure or gap: signs nearer to zero are ties
+STEPS, REFINEMENTS = 60, 20  # limits of Newton's steps in doubles, and in digits
+CLOSE, SETTLED = 1e-8, 1e-20  # largest last step: relative to the state; in digits, below a double's
+TIE = 1e-26  # share of the maximum pressure or gap: signs nearer to zero are ties
+TINY = 1e-60  # complex step
+FIRST, RATIO, SOLVES = 1e-3, 10**0.5, 60  # of a continuation: first factor, largest ratio, limit
 
 
 class NotSettled(ArithmeticError):
@@ -45,191 +48,198 @@ class Exactly:
     approach: Exact
     normal: Exact
     friction: Exact
-    contact: NDArray[np.bool_]
+    contact: Mask
     margin: float
+
+
+class Guess(NamedTuple):
+    """Unknowns in their units, elements in contact, and those units: of pressure (Pa), length and gap (m)."""
+
+    x: Any
+    contact: Mask
+    units: tuple[float, float, float]
 
 
 class Oracle:
     """One scene on a tiny grid; heights are the doubles that the surfaces deliver, exact from there on."""
 
     def __init__(
-        self,
-        scene: rf.Scene,
-        M: int,
-        *,
-        approach: float | None = None,
-        oblique: bool = True,
-        slope_correction: bool = False,
-    ) -> None:
-        grid = scene.grid(M)
-        self.scene, self.M, self.oblique, self.correction = scene, M, oblique, slope_correction
+        self, scene: rf.Scene, M: int, *,
+        approach: float | None = None, oblique: bool = True, slope_correction: bool = False,
+    ) -> None:  # fmt: skip
+        grid, periodic = scene.grid(M), scene.periodic
+        self.scene, self.n, self.oblique, self.correction = scene, M**2, oblique, slope_correction
         self.spacing = mp.mpf(scene.side) / M
-        self.z_lower = _exact(scene.lower.surface.heights(grid))
-        self.z_upper = _exact(scene.upper.surface.heights(grid))
-        gap = self.z_upper - self.z_lower
+        bodies = [(mp.mpf(body.material.E), mp.mpf(body.material.nu)) for body in (scene.lower, scene.upper)]
+        x, y = (matrix * self.spacing for matrix in operators.tangential(M, periodic))
+        cos, sin = mp.cos(mp.mpf(scene.sliding_direction)), mp.sin(mp.mpf(scene.sliding_direction))
+        d_x, d_y = (operators.difference(M, axis, periodic) / self.spacing for axis in (0, 1))
+        z_lower, z_upper = (_exact(body.surface.heights(grid)) for body in (scene.lower, scene.upper))
+        gap = z_upper - z_lower
         self.h = gap - min(gap)
         self.approach = None
         if approach is not None:
-            self.approach = mp.mpf(approach) + (sum(self.h) / len(self.h) if scene.periodic else 0)
-        bodies = [(mp.mpf(body.material.E), mp.mpf(body.material.nu)) for body in (scene.lower, scene.upper)]
+            self.approach = mp.mpf(approach) + (sum(self.h) / self.n if periodic else 0)
         self.a = [(1 - nu**2) / (mp.pi * E) for E, nu in bodies]
-        self.c = [(1 + nu) * (1 - 2 * nu) / (2 * mp.pi * E) for E, nu in bodies]
-        self.A = operators.normal(M, scene.periodic) * self.spacing
-        x, y = (matrix * self.spacing for matrix in operators.tangential(M, scene.periodic))
-        cos, sin = mp.cos(mp.mpf(scene.sliding_direction)), mp.sin(mp.mpf(scene.sliding_direction))
-        self.S, self.T = x * cos + y * sin, y * cos - x * sin
-        self.D = [operators.difference(M, axis, scene.periodic) / self.spacing for axis in (0, 1)]
-        self.cos, self.sin = cos, sin
-        self.flat = (np.full(M**2, mp.mpf(0), dtype=object),) * 2
+        self.exact = {
+            "h": self.h[:, None], "mean": ((z_lower + z_upper) / 2)[:, None],
+            "A": operators.normal(M, periodic) * self.spacing, "S": x * cos + y * sin, "T": y * cos - x * sin,
+            "D_x": d_x * cos + d_y * sin, "D_y": d_y * cos - d_x * sin, "a": np.array(self.a),
+            "c": np.array([(1 + nu) * (1 - 2 * nu) / (2 * mp.pi * E) for E, nu in bodies]),
+            "dA": np.array([self.spacing**2]), "approach": np.array([self.approach or mp.mpf(0)]),
+        }  # fmt: skip
+        self.doubles = {name: values.astype(float) for name, values in self.exact.items()}
 
-    def solve(
-        self, pressure: Array, support: NDArray[np.bool_], tangents: tuple[Array, Array] | None = None
-    ) -> Exactly:
+    def solve(self, pressure: Array, support: Mask, tangents: tuple[Array, Array] | None = None) -> Exactly:
         """The exact state that belongs to a returned pressure and to tau's active set, both ``(M, M)``.
 
         Slopes are sought from the returned ``tangents`` on, or from those that the pressure leaves on flats.
         """
-        with mp.workdps(DIGITS):
-            chi = np.array([mp.mpf(int(s)) for s in support.ravel()], dtype=object)
-            f, contact = _exact(pressure), pressure.ravel() > 0
-            tan = self._slopes(f, self._traction(f, chi), self.flat)
-            if self.oblique and tangents is not None:
-                tan = _exact(tangents[0]), _exact(tangents[1])
-            history: list[tuple[Exact, Exact]] = []
-            for _ in range(SLOPE_UPDATES):
-                last = f
-                f, delta, contact, margin = self._frozen(tan, chi, contact)
-                r = self._traction(f, chi)
-                new = self._slopes(f, r, tan)
-                if not self.oblique or max(abs(f - last)) <= SETTLED * max(f):
-                    tan = new
-                    break
-                history = [*history[-MIXED:], (np.array(new), np.array(new) - np.array(tan))]
-                tan = _mixed(history)
-            else:
-                raise NotSettled("slopes of the exact state do not settle")
-            cos_x, cos_y = _cos(tan[0]), _cos(tan[1])
-            sin_x, dA = tan[0] * cos_x, self.spacing**2
-            normal = sum((f * cos_x - r * sin_x) * cos_y) * dA
-            friction = sum((f * sin_x + r * cos_x) * cos_y) * dA
-        return Exactly(f, delta, normal, friction, contact, margin)
+        law = self.scene.friction
+        guess = self._guess(pressure.ravel(), support.ravel(), law.beta, tangents)
+        guess = self._newton(guess, support.ravel(), self.scene.load, law.beta)
+        return self._refined(guess, support.ravel())
 
-    def _traction(self, f: Exact, chi: Exact) -> Exact:
-        return chi * mp.mpf(self.scene.friction.tau) + f * mp.mpf(self.scene.friction.beta)
+    def continued(self) -> Exactly:
+        """The exact state under a load by continuation in beta where that is above 1, else in the load."""
+        load, beta = self.scene.load, self.scene.friction.beta
+        known, ratio = min(1.0, 1 / beta) if beta > 1 else FIRST, RATIO
+        by_beta = beta > 1
 
-    def _slopes(self, f: Exact, r: Exact, tan: tuple[Exact, Exact]) -> tuple[Exact, Exact]:
-        """Tangents of the mean of both deformed surfaces, along and across sliding."""
-        if not self.oblique:
-            return self.flat
-        down, along, across = f, r, None
+        def at(guess: Guess, factor: float) -> Guess:
+            return self._newton(
+                guess, None, load if by_beta else load * factor, beta * factor if by_beta else beta
+            )
+
+        everywhere = np.ones(self.n, dtype=bool)
+        even = np.full(self.n, (load if by_beta else load * known) / self.n / float(self.spacing) ** 2)
+        guess = at(self._guess(even, everywhere, beta * known if by_beta else beta), known)
+        for _ in range(SOLVES):
+            if known == 1:
+                return self._refined(guess, guess.contact)
+            factor = min(1.0, known * ratio)
+            try:
+                guess, known, ratio = at(guess, factor), factor, min(RATIO, ratio**1.5)
+            except NotSettled:
+                ratio = ratio**0.5
+        raise NotSettled("the continuation does not arrive")
+
+    def _guess(
+        self, f: Array, support: Mask, beta: float, tangents: tuple[Array, Array] | None = None
+    ) -> Guess:
+        """Unknowns of a pressure; gaps, approach and slopes follow from its displacements."""
+        peak = float(f.max())
+        length = float(sum(self.a) * self.spacing) * peak
+        units = peak, length, length + float(max(self.h))
+        n, contact = self.n, f > 0
+        x = np.zeros((3 * n + 1, 1))
+        x[:n, 0] = f / peak
+        if tangents is None or not self.oblique:  # the residual of flat slopes is minus those of the surface
+            of_flat = self._residual(self.doubles, Guess(x, contact, units), support, 1.0, beta)
+            x[n : 3 * n] = -of_flat[n : 3 * n] if self.oblique else 0.0
+        else:
+            x[n : 3 * n, 0] = np.concatenate([tan.ravel() for tan in tangents])
+        K = ((1 + x[n : 2 * n] ** 2) * (1 + x[2 * n : 3 * n] ** 2)) ** -0.5
+        missed = self._residual(self.doubles, Guess(x, contact, units), support, 1.0, beta)
+        v = missed[:n] / K * np.where(contact, units[1], units[2])[:, None]
+        approach = float(np.sum(v[:, 0] * f) / f.sum())
+        x[:n] += np.where(contact[:, None], 0.0, abs(v - approach) / units[2])
+        x[-1] = approach / length
+        return Guess(x, contact, units)
+
+    def _residual(self, on: dict[str, Exact], state: Guess, support: Mask, load: Any, beta: Any) -> Exact:
+        """Residuals of Eqs (6) and (7), of the tangents, and of Eq. (2); a column for each of ``state.x``."""
+        n, (peak, length, room) = self.n, state.units
+        x, inside = state.x, state.contact[:, None]
+        f, gap = x[:n] * (inside * peak), x[:n] * (~inside * room)
+        tan_x, tan_y, delta = x[n : 2 * n], x[2 * n : 3 * n], x[-1:] * length
+        cos_x, cos_y = (1 + tan_x * tan_x) ** -0.5, (1 + tan_y * tan_y) ** -0.5
+        r = f * beta + support[:, None] * self.scene.friction.tau
+        down, along, across = f, r, f * 0
         if self.correction:
-            down, along, across = f - r * tan[0], r + f * tan[0], f * tan[1]
-        shear = self.S @ along + (0 if across is None else self.T @ across)
-        pressed = self.A @ down
-        lower = self.z_lower - pressed * self.a[0] - shear * self.c[0]
-        upper = self.z_upper + pressed * self.a[1] - shear * self.c[1]
-        x, y = (D @ ((lower + upper) / 2) for D in self.D)
-        return x * self.cos + y * self.sin, y * self.cos - x * self.sin
-
-    def _frozen(
-        self, tan: tuple[Exact, Exact], chi: Exact, contact: NDArray[np.bool_]
-    ) -> tuple[Exact, Exact, NDArray[np.bool_], float]:
-        """Pressure, approach, contact set and margin at fixed slopes and active set of tau."""
-        tau, beta = mp.mpf(self.scene.friction.tau), mp.mpf(self.scene.friction.beta)
-        a, c, (tan_x, tan_y) = sum(self.a), self.c[0] - self.c[1], tan
-        cos_x, cos_y = _cos(tan_x), _cos(tan_y)
-        G, g = self.A * a + self.S * (c * beta), (self.S @ chi) * (c * tau)
-        if self.correction:
-            G = self.A * a * (1 - tan_x * beta) + self.S * c * (tan_x + beta) + self.T * c * tan_y
-            g = ((self.S @ chi) * c - (self.A @ (chi * tan_x)) * a) * tau
-        K = cos_x * cos_y
-        weights = (cos_x - tan_x * cos_x * beta) * cos_y
-        offset = tau * sum(chi * tan_x * K)
-        target = (mp.mpf(self.scene.load) / self.spacing**2) + offset
-        right = -(K * self.h + g)
-        for exchange in range(EXCHANGES):
-            f, delta = self._equations(G, right, K, weights, target, contact)
-            room = G @ f - right - K * delta
-            bad, margin = _infeasible(f, room, contact)
-            if not bad.any():
-                return f, delta, contact, margin
-            if exchange > EXCHANGES // 4:  # blocks may cycle; one at a time from the last index on does not
-                bad[: np.flatnonzero(bad)[-1]] = False
-            contact = contact ^ bad
-            if not contact.any():
-                contact = bad
-        raise NotSettled("exchanges of the exact state do not end")
-
-    def _equations(
-        self, G: Exact, right: Exact, K: Exact, weights: Exact, target: Exact, contact: NDArray[np.bool_]
-    ) -> tuple[Exact, Exact]:
-        """Pressure on the contact set, and the approach: bordered by the load unless that is prescribed."""
-        index = np.flatnonzero(contact)
-        f = np.full(len(K), mp.mpf(0), dtype=object)
+            down, along, across = f - r * tan_x, r + f * tan_x, f * tan_y
+        pressed, shear = on["A"] @ down, on["S"] @ along + on["T"] @ across
+        lower = pressed * on["a"][0] + shear * on["c"][0]
+        upper = pressed * on["a"][1] - shear * on["c"][1]
+        surface = on["mean"] + (upper - lower) * 0.5
+        units = np.where(inside, length, room)
+        contact = (lower + upper + cos_x * cos_y * (on["h"] - delta - gap)) / units
+        slopes = [tan - (on[D] @ surface) * self.oblique for tan, D in ((tan_x, "D_x"), (tan_y, "D_y"))]
         if self.approach is not None:
-            if len(index):
-                f[index] = eliminated(G[np.ix_(index, index)], (right + K * self.approach)[index])
-            return f, self.approach
-        n = len(index)
-        # pressures come in units of 1/|G|: the border and the block then have one size
-        unit, scale = (np.max(np.abs(values)) or mp.mpf(1) for values in (G, weights))
-        bordered = np.full((n + 1, n + 1), mp.mpf(0), dtype=object)
-        bordered[:n, :n], bordered[:n, n] = G[np.ix_(index, index)] / unit, -K[index]
-        bordered[n, :n] = weights[index] / scale
-        found = eliminated(bordered, np.append(right[index], target * unit / scale))
-        f[index] = found[:n] / unit
-        return f, found[n]
+            return np.concatenate([contact, *slopes, x[-1:] - on["approach"][0] / length])
+        carried = np.sum((f - r * tan_x) * cos_x * cos_y, axis=0, keepdims=True) * on["dA"][0]
+        return np.concatenate([contact, *slopes, carried / load - 1])
 
+    def _step(self, state: Guess, support: Mask, load: Any, beta: Any, residual: Array) -> Array:
+        """Newton's step for a residual: the Jacobian by complex steps, its rows and columns in one size."""
+        size = len(state.x)
+        shifted = state.x.astype(float) + 1j * TINY * np.eye(size)
+        jacobian = self._residual(self.doubles, state._replace(x=shifted), support, load, beta).imag / TINY
+        rows = 1 / np.abs(jacobian).max(axis=1)
+        columns = 1 / np.abs(jacobian * rows[:, None]).max(axis=0)
+        try:
+            return columns * np.linalg.solve(jacobian * rows[:, None] * columns, -rows * residual)
+        except np.linalg.LinAlgError:
+            raise NotSettled("singular equations") from None
 
-def _infeasible(f: Exact, room: Exact, contact: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], float]:
-    """Elements that break Eq. (6), and the least relative distance of any element from doing so."""
-    inside, outside = f[contact], room[~contact]
-    scale_f, scale_v = max(abs(f)) or mp.mpf(1), max(abs(room)) or mp.mpf(1)
-    bad = np.zeros(len(f), dtype=bool)
-    bad[contact] = [bool(value < -TIE * scale_f) for value in inside]
-    bad[~contact] = [bool(value < -TIE * scale_v) for value in outside]
-    margins = [float(min(abs(v)) / s) for v, s in ((inside, scale_f), (outside, scale_v)) if len(v)]
-    return bad, min(margins)
+    def _moved(self, state: Guess, step: Exact, one: bool) -> tuple[Guess, bool]:
+        """The state after a step; elements of negative pressure or gap are exchanged, all or the last one."""
+        x = state.x + step[:, None]
+        y = x[: self.n, 0]
+        bad = np.zeros(self.n, dtype=bool)
+        for side in (state.contact, ~state.contact):
+            if side.any():
+                bad[side] = (y[side] < -TIE * max(abs(y[side]))).astype(bool)
+        if one and bad.any():
+            bad[: np.flatnonzero(bad)[-1]] = False
+        y[bad] = 0
+        contact = state.contact ^ bad
+        return state._replace(x=x, contact=contact if contact.any() else bad), bool(bad.any())
 
+    def _newton(self, state: Guess, support: Mask | None, load: Any, beta: Any) -> Guess:
+        """Solve in doubles; tau acts on the support, by default on the contact."""
+        for count in range(STEPS):
+            on = state.contact if support is None else support
+            with np.errstate(all="ignore"):
+                residual = self._residual(self.doubles, state, on, load, beta)[:, 0]
+                if not np.isfinite(residual).all():
+                    raise NotSettled("slopes of the exact state do not settle")
+                step = self._step(state, on, load, beta, residual)
+            state, exchanged = self._moved(state, step, one=count > STEPS // 2)
+            if not exchanged and np.abs(step).max() <= CLOSE * np.abs(state.x).max():
+                return state
+        raise NotSettled("Newton's steps do not end")
 
-def eliminated(matrix: Exact, right: Exact) -> Exact:
-    """Gaussian elimination with partial pivoting on object arrays."""
-    m, x = matrix.copy(), right.copy()
-    n = len(x)
-    for k in range(n):
-        p = k + int(np.argmax(np.abs(m[k:, k])))
-        if m[p, k] == 0:
-            raise NotSettled("singular equations")
-        if p != k:
-            m[[k, p]], x[[k, p]] = m[[p, k]], x[[p, k]]
-        factors = m[k + 1 :, k] / m[k, k]
-        m[k + 1 :, k + 1 :] -= np.outer(factors, m[k, k + 1 :])
-        x[k + 1 :] -= factors * x[k]
-    for k in reversed(range(n)):
-        x[k] = (x[k] - (m[k, k + 1 :] @ x[k + 1 :] if k + 1 < n else 0)) / m[k, k]
-    return x
+    def _refined(self, state: Guess, support: Mask) -> Exactly:
+        """Residuals in digits, steps by the Jacobian in doubles."""
+        load, law, n = self.scene.load, self.scene.friction, self.n
+        with mp.workdps(DIGITS):
+            state = state._replace(x=_exact(state.x[:, 0])[:, None])
+            for _ in range(REFINEMENTS):
+                residual = self._residual(self.exact, state, support, load, law.beta)[:, 0]
+                size = max(abs(residual)) or mp.mpf(1)
+                step = (
+                    _exact(self._step(state, support, load, law.beta, (residual / size).astype(float))) * size
+                )
+                state, exchanged = self._moved(state, step, one=False)
+                if not exchanged and max(abs(step)) <= SETTLED * max(abs(state.x[:, 0])):
+                    return self._state(state, support)
+        raise NotSettled("refinements of the exact state do not end")
 
-
-def _cos(tan: Exact) -> Exact:
-    return np.array([1 / mp.sqrt(1 + t * t) for t in tan], dtype=object)
-
-
-def _mixed(history: list[tuple[Exact, Exact]]) -> tuple[Exact, Exact]:
-    """The next slopes from the last ones found and their changes: Anderson (1965) mixing.
-
-    Its few shares are doubles: they steer the iteration, and where it ends does not depend on them.
-    """
-    found, changes = zip(*history, strict=True)
-    if len(history) < 2:
-        return tuple(found[-1])
-    steps = [(later - earlier).ravel() for earlier, later in pairwise(changes)]
-    scale = max(max(abs(step)) for step in steps)
-    columns = np.array([(step / scale).astype(float) for step in steps]).T
-    shares = np.linalg.lstsq(columns, (changes[-1].ravel() / scale).astype(float), rcond=None)[0]
-    mixed = found[-1]
-    for share, (earlier, later) in zip(shares, pairwise(found), strict=True):
-        mixed = mixed - (later - earlier) * mp.mpf(float(share))
-    return tuple(mixed)
+    def _state(self, state: Guess, support: Mask) -> Exactly:
+        n, (peak, length, _), law = self.n, state.units, self.scene.friction
+        y, tan_x, tan_y = (state.x[k * n : (k + 1) * n, 0] for k in range(3))
+        f = y * np.where(state.contact, peak, 0.0)
+        r = f * law.beta + support * law.tau
+        K = ((1 + tan_x * tan_x) * (1 + tan_y * tan_y)) ** -0.5
+        margins = [
+            min(abs(y[side])) / (max(abs(y[side])) or 1)
+            for side in (state.contact, ~state.contact)
+            if side.any()
+        ]
+        dA = self.exact["dA"][0]
+        normal, friction = sum((f - r * tan_x) * K) * dA, sum((f * tan_x + r) * K) * dA
+        return Exactly(f, state.x[-1, 0] * length, normal, friction, state.contact, float(min(margins)))
 
 
 def _exact(values: Array) -> Exact:

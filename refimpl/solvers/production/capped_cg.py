@@ -193,7 +193,8 @@ class CappedCG(ProjectedCG):
     def _scale_to_target(self, *, displace: bool = True) -> None:
         """Scale the free pressures to the load that the capped ones leave, but none beyond the cap.
 
-        Where those cannot bear it, or the capped ones bear more, all pressures are scaled.
+        Where the capped ones bear more, those of largest ``v`` lose their pressure; where the free ones
+        cannot bear it, all pressures are scaled.
         """
         assert self._target is not None
         assert self._free_target is not None
@@ -204,6 +205,8 @@ class CappedCG(ProjectedCG):
             return
         if carried > 0 and 0 < target < self._cap * float(np.sum(self._K, where=free > 0)):
             filled = filled_up(free, self._K, target, self._cap) + self._cap * self.capped
+        elif target <= 0 and displace:
+            filled = self._deepest_first()
         elif self.contact.any():
             filled = filled_up(self.pressure, self._K, self._target, self._cap)
         else:
@@ -211,6 +214,17 @@ class CappedCG(ProjectedCG):
         self._set_pressure(filled)
         if displace:
             self.normal_displacement = self._apply(self.pressure)
+
+    def _deepest_first(self) -> Array:
+        """The cap on the capped elements in the order of ``v``, as far as the target goes."""
+        assert self._target is not None
+        order = np.argsort(np.where(self.capped, self.separation, math.inf), axis=None, kind="stable")
+        most = (self._cap * self._K * self.capped).ravel()[order]
+        share = np.ones(order.size)
+        np.divide(self._target - (np.cumsum(most) - most), most, out=share, where=most > 0)
+        filled = np.zeros(order.size)
+        filled[order] = self._cap * np.clip(share, 0.0, 1.0) * (most > 0)
+        return filled.reshape(self.capped.shape)
 
     def _set_pressure(self, pressure: Array) -> None:
         """Go on from another pressure, with the sets that it has; the last direction is dropped."""

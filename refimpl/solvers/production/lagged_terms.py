@@ -25,11 +25,10 @@ from refimpl.solvers.production.anderson import AndersonMixing
 from refimpl.solvers.production.constants import (
     LARGEST_DISPLACEMENT,
     NEGLIGIBLE_COUPLING,
-    SETTLED,
-    SETTLING_LIMIT,
     STEEPEST_COSINE,
     WEAK_COUPLING,
 )
+from refimpl.solvers.production.fully_plastic import settled_indentation
 from refimpl.solvers.production.projected_cg import ProjectedCG
 from refimpl.solvers.tau_active_set import ActiveSet, first_set
 
@@ -202,35 +201,13 @@ class LaggedTerms:
             lower, upper = problem.displacements(
                 operator, pressure, self.traction, self.slopes, normal=displacement
             )
-        self.indentation, slopes = self._settled(lower, upper)
-        return lower + upper - displacement, slopes
-
-    def _settled(self, lower: Array, upper: Array) -> tuple[Array | None, Slopes]:
-        """The plastic indentation and the slopes of the surface that it lowers, each from the other.
-
-        An indentation changes with the cosines by ``approach - h``, and the slopes by its differences: on
-        elements smaller than that depth plain updates of one by the other diverge. They are mixed instead,
-        which takes no transform.
-        """
-        problem, pressure, displacement = self._problem, self._cg.pressure, lower + upper
+        closed = lower + upper
 
         def indentation(slopes: Slopes) -> Array | None:
-            return problem.indentation(pressure, displacement, slopes.cosine_product, self._approach())
+            return problem.indentation(pressure, closed, slopes.cosine_product, self._approach())
 
-        found = indentation(self.slopes)
-        slopes = problem.slopes(lower, upper, found)
-        if found is None:
-            return found, slopes
-        mixing, first = AndersonMixing(), math.inf
-        for _ in range(SETTLING_LIMIT):
-            requested = np.asarray(indentation(slopes))
-            change = float(np.abs(requested - found).max())
-            first = min(first, change) if math.isinf(first) else first
-            if change <= SETTLED * first or change == 0:
-                break
-            found = mixing.next(found, requested)
-            slopes = problem.slopes(lower, upper, found)
-        return found, slopes
+        self.indentation, slopes = settled_indentation(problem, lower, upper, indentation, self.slopes)
+        return closed - displacement, slopes
 
     def _approach(self) -> float:
         """The present approach; before the first problem is set, that of a contact without shear."""

@@ -126,12 +126,36 @@ def test_no_contact_bears_more_than_the_hardness(method: str, periodic: bool) ->
     assert s.pressure == pytest.approx(np.full((8, 8), H), rel=1e-9)
     assert s.friction_coefficient == pytest.approx(15e6 / H + 0.1, rel=1e-9)
     assert s.contact_area == pytest.approx(1e-6)
-    if method == "dense":  # which keeps one element free, at the hardness but for rounding
-        assert s.plastic_area >= s.contact_area - 1.5 * s.grid.element_area
-        return
     assert s.plastic_area == s.contact_area
     assert math.isinf(sum(s.uncertainty["approach"].values()))
     assert "the approach is not unique" in " ".join(s.warnings)
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_a_load_that_slopes_do_not_carry_ends_before_any_iteration(periodic: bool) -> None:
+    """Alike by both methods, with the largest load; just below it there is a state."""
+    rough = rf.Body(STEEL, rf.GaussianRoughness(20e-6, 100e-6, seed=1))
+    scene = replace(ROUGH, upper=rough, lower=rf.Body(COPPER, rf.Flat()), periodic=periodic)
+    for method in ("fft", "dense"):
+        s = rf.solve(replace(scene, load=0.9999 * H * 1e-6), 12, method=method)  # type: ignore[arg-type]
+        assert s.status is rf.Status.STAGNATED
+        assert not s.cost.iterations
+        (told,) = (w for w in s.warnings if "at the hardness everywhere the contact carries" in w)
+        assert f"{s.normal_force:.6g} N" in told
+        assert s.normal_force < 0.995 * H * 1e-6
+        below = replace(scene, load=0.995 * s.normal_force)
+        assert rf.solve(below, 12, method=method, plastic=True).converged  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("share", [0.995, 0.9999, 0.99999])
+def test_capped_elements_that_bear_too_much_leave_by_their_depth(share: float) -> None:
+    """Rigid-plastic: rough by far more than pressures at the hardness move; scaling all would free all."""
+    z = 10e-6 * np.random.default_rng(1).standard_normal((10, 10))
+    scene = replace(hard(5e4, FLATS), periodic=True, friction=rf.Friction(beta=0.2))
+    scene = replace(scene, lower=rf.Body(scene.lower.material, z), load=share * 5e4 * 1e-6)
+    s = rf.solve(scene, 10, plastic=True)
+    assert s.converged
+    assert s.plastic_share > 0.97
 
 
 def test_the_scene_and_its_file_choose(tmp_path: Path) -> None:

@@ -167,6 +167,7 @@ def _yielding(smooth: rf.Scene, hardness: float) -> rf.Scene:
     )
 
 
+@pytest.mark.nightly
 def test_the_hardness_is_given_back_from_a_wrong_guess(smooth: rf.Scene) -> None:
     """p_max of the elastic contact is 0.17 GPa at 70 N: 0.1 GPa yields at the larger loads alone."""
     rows = _rows(_yielding(smooth, 100e6), 0.002, (2.0, 5.0, 10.0, 20.0, 40.0, 80.0), 64)

@@ -24,7 +24,7 @@ from verification.properties.nightly import SOLVERS
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("name", INVARIANTS)
 def test_invariant(name: str, solver: str, order_seed: int | None) -> None:
-    check_solver(SOLVERS[solver], examples=20, only=[name], seed=order_seed)
+    check_solver(SOLVERS[solver], examples=8, only=[name], seed=order_seed)
 
 
 PROGRAM = """
