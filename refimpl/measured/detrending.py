@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 import scipy
@@ -21,24 +20,9 @@ MAX_DEGREE = 10
 _FITTED = 250_000  # points of a curved form: more are thinned out evenly
 
 
-class Form(Protocol):
-    """A smooth surface over positions in pixels, to be subtracted anywhere."""
-
-    def __call__(self, x: Array, y: Array) -> Array:
-        """Heights at all pairs of ``x``, ``y``, shape ``(len(x), len(y))``."""
-
-    @property
-    def slopes(self) -> tuple[float, float]:
-        """dz/dx, dz/dy at the centre, per pixel."""
-
-    @property
-    def radius(self) -> float | None:
-        """Radius of curvature (m), negative for a hollow; None for a polynomial."""
-
-
 @dataclass(frozen=True)
 class Polynomial:
-    """A polynomial in x, y of total degree <= ``degree``; ``coefficients[a, b]`` belongs to X^a Y^b,
+    """A polynomial in x, y (pixels) of total degree <= ``degree``; ``coefficients[a, b]`` belongs to X^a Y^b,
     X = (x - x0) / s_x, Y = (y - y0) / s_y."""
 
     coefficients: Array
@@ -47,11 +31,13 @@ class Polynomial:
     radius: float | None = None
 
     def __call__(self, x: Array, y: Array) -> Array:
+        """Heights at all pairs of ``x``, ``y``, shape ``(len(x), len(y))``."""
         X, Y = (self._powers(at, axis) for axis, at in enumerate((x, y)))
         return np.asarray(X @ self.coefficients @ Y.T)
 
     @property
     def slopes(self) -> tuple[float, float]:
+        """dz/dx, dz/dy at the centre, per pixel."""
         c = self.coefficients
         return (c[1, 0] / self.scale[0], c[0, 1] / self.scale[1]) if len(c) > 1 else (0.0, 0.0)
 
@@ -95,7 +81,11 @@ class Curved:
 
     @property
     def radius(self) -> float | None:
+        """Radius of curvature (m), negative for a hollow."""
         return -1.0 / self.numbers[3] if self.numbers[3] else None
+
+
+Form = Polynomial | Curved
 
 
 def _cap(tilted: Array, squared: Array, slope: float, curvature: float) -> Array:

@@ -5,21 +5,16 @@ from __future__ import annotations
 import contextlib
 import io
 import logging
-import struct
-import tokenize
 import warnings
-import zipfile
-import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
-import scipy
 
-from refimpl.errors import InputError, printable
+from refimpl.errors import InputError
 from refimpl.measured.channels import (
     ARRAYS,
     choose,
@@ -31,11 +26,9 @@ from refimpl.measured.channels import (
 )
 from refimpl.measured.file_kinds import kind_of
 from refimpl.measured.point_tables import points_map
-from refimpl.measured.reading import ALONG_Y, ARRAY, IMAGE, UNITS, Overrides, RawHeights, checked
+from refimpl.measured.reading import ALONG_Y, ARRAY, IMAGE, UNITS, Overrides, RawHeights, checked, first_line
 from refimpl.measured.text_lines import WYKO
 from refimpl.measured.workarounds import NMS_UNIT, Source, rewritten
-
-T = TypeVar("T")
 
 TEXT_FORMATS = ("asc", "xyz")  # read by `text_tables`
 
@@ -45,20 +38,12 @@ UPWARDS = ("x3p", "sdf", "nc", "npy", "npz", "mat", "h5")
 
 MARKLESS = ("mat", "nms", "hgt")  # read for their suffix alone
 
-# Errors that a reader may raise on bytes that do not have the format of their mark. SurfaceTopography's own
-# errors are plain Exceptions and join these where it is imported.
-CORRUPT: tuple[type[Exception], ...] = (
-    ArithmeticError, AssertionError, AttributeError, EOFError, LookupError, MemoryError, OSError,
-    RuntimeError, SyntaxError, TypeError, ValueError, struct.error, tokenize.TokenError, zipfile.BadZipFile,
-    zlib.error,
-)  # fmt: skip
-
 
 def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
     """Heights of a binary instrument file; ``head``: its first bytes. Raises InputError."""
     library = library_for(path)
     if is_container(path):
-        return read_or_refuse(path, lambda file: _of_container(library, file, given), corrupt(library))
+        return _of_container(library, path, given)
     formats = _formats(library, path, head)
     failures = []
     for name in formats:
@@ -66,7 +51,7 @@ def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
             return read_as(library, path, name, given, *rewritten(path, name, given))
         except InputError:
             raise
-        except corrupt(library) as error:
+        except Exception as error:
             failures.append(f"{name}: {first_line(error)}")
     if kind := kind_of(path, head):
         raise InputError("path", str(path), kind)
@@ -183,16 +168,6 @@ def _of_container(library: ModuleType, path: Path, given: Overrides) -> RawHeigh
     return replace(reading, channel=member.name, channels=names, source=source, notes=(note, *reading.notes))
 
 
-def read_or_refuse(path: Path, load: Callable[[Path], T], kinds: tuple[type[Exception], ...] = CORRUPT) -> T:
-    """``load(path)``, whose failures become one line of InputError."""
-    try:
-        return load(path)
-    except InputError:
-        raise
-    except kinds as error:
-        raise InputError("path", str(path), f"a file that can be read ({first_line(error)})") from error
-
-
 def library_for(path: Path) -> ModuleType:
     """SurfaceTopography. Raises InputError where it is not installed."""
     try:
@@ -206,21 +181,3 @@ def library_for(path: Path) -> ModuleType:
     logging.getLogger("SurfaceTopography").addHandler(logging.NullHandler())  # nothing on stderr
     module: ModuleType = SurfaceTopography
     return module
-
-
-def corrupt(library: ModuleType) -> tuple[type[Exception], ...]:
-    """All that the library raises on files that are not what they claim to be."""
-    own = library.Exceptions  # with no base in common
-    return (
-        *CORRUPT,
-        scipy.io.matlab.MatReadError,
-        own.ReadFileError,
-        own.UnknownFileFormat,
-        own.CannotPerformAnalysisError,
-    )
-
-
-def first_line(error: object) -> str:
-    """One line of an error or a warning: its kind and its own words."""
-    lines = [line.strip() for line in str(error).splitlines() if line.strip()] or [""]
-    return f"{type(error).__name__}: {printable(lines[0])[:160]}"

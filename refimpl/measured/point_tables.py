@@ -11,14 +11,9 @@ from refimpl.errors import InputError, size_text
 from refimpl.grid import Array
 from refimpl.measured.reading import MAX_POINTS, UNITS, Overrides, RawHeights, checked
 
-POINT = 3  # columns
+POINT = 3  # columns; a map has four at least
 _SAME_PITCH = 0.01  # relative difference of two pitches: digits of a given one
 _UNIT = re.compile(rf"(?<!\w)({'|'.join(UNITS)})(?!\w)")
-
-
-def is_triples(rows: Array) -> bool:
-    """True if the rows are points x, y, z: a map has four columns at least."""
-    return bool(rows.shape[1] == POINT)
 
 
 def on_grid(path: Path, points: Array) -> tuple[Array, tuple[float, float]]:

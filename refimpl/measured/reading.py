@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
-from refimpl.errors import InputError, require_size, size_text
+from refimpl.errors import InputError, printable, require_size, size_text
 from refimpl.grid import Array
+
+T = TypeVar("T")
 
 MAX_BYTES = 256 * 2**20
 MAX_POINTS = 2**24
@@ -96,6 +100,22 @@ class Overrides:
         for edge in edges:
             require_size(f"pixel of {name}", edge, "a positive length in m")
         return ASCII.get(used, used), edges, tuple(notes)
+
+
+def read_or_refuse(path: Path, load: Callable[[], T]) -> T:
+    """``load()``, whose failures of any kind become one line of `InputError`."""
+    try:
+        return load()
+    except InputError:
+        raise
+    except Exception as error:  # other people's parsers raise anything
+        raise InputError("path", str(path), f"a file that can be read ({first_line(error)})") from error
+
+
+def first_line(error: object) -> str:
+    """One line of an error or a warning: its kind and its own words."""
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()] or [""]
+    return f"{type(error).__name__}: {printable(lines[0])[:160]}"
 
 
 def checked(path: Path, raw: Array) -> Array:
