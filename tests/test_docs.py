@@ -15,7 +15,8 @@ DOCS = sorted((ROOT / "docs").glob("*.md"))
 
 
 LONG = {
-    "notebooks", "read-the-report", "friction-with-an-error-bar", "reference-data", "measured-surfaces", "yield"
+    "notebooks", "read-the-report", "friction-with-an-error-bar", "reference-data", "measured-surfaces",
+    "yield",
 }  # fmt: skip
 """Pages of 5 seconds and more, but for check-your-solver, whose program in C no other test of CI runs."""
 
