@@ -159,7 +159,7 @@ def limit_process(seconds: float, memory: int) -> None:
 
 @contextmanager
 def interrupts_blocked() -> Iterator[None]:
-    """Processes started in the block get no interrupts: one sent to the whole group is for this process.
+    """Keep interrupts from processes started in the block: one sent to the whole group is for this process.
 
     On Windows a console sends them to all.
     """

@@ -228,7 +228,7 @@ def fine(found: Iterable[Number]) -> list[Number]:
 
 
 def by_quantity(found: Iterable[Number]) -> dict[str, list[Number]]:
-    """Numbers by quantity, in order of first appearance; Table 3's on the fine mesh alone."""
+    """Return the numbers by quantity, in order of first appearance; Table 3's on the fine mesh alone."""
     groups: dict[str, list[Number]] = {}
     for n in compared(found):
         groups.setdefault(n.quantity, []).append(n)
@@ -236,7 +236,8 @@ def by_quantity(found: Iterable[Number]) -> dict[str, list[Number]]:
 
 
 def ratio_and_scatter(group: Sequence[Number]) -> tuple[float, float | None]:
-    """Geometric mean and geometric standard deviation of computed / printed; no deviation of one number.
+    """Return the geometric mean and geometric standard deviation of computed / printed; no deviation of one
+    number.
 
     >>> ratio_and_scatter([Number("", "", "", "", 1.0, value, 0.0, 0.0) for value in (2.0, 8.0)])
     (4.0, 2.665...)
@@ -247,8 +248,8 @@ def ratio_and_scatter(group: Sequence[Number]) -> tuple[float, float | None]:
 
 
 def verdict_of(group: Sequence[Number]) -> str:
-    """The verdict on a statement of these numbers: not confirmed where any has |E| > u. A number with several
-    readings is confirmed with conditions where only some of them agree.
+    """Return the verdict on a statement of these numbers: not confirmed where any has |E| > u. A number with
+    several readings is confirmed with conditions where only some of them agree.
     """
     within = [n.within for n in group]
     if not within:
@@ -268,7 +269,7 @@ def printed(found: Iterable[Number]) -> dict[tuple[str, ...], bool]:
 
 
 def as_cases(groups: Mapping[str, Sequence[Number]]) -> dict[str, dict[str, Any]]:
-    """The numbers by quantity in the shape of cases, "numbers/QUANTITY" of findings."""
+    """Return the numbers by quantity in the shape of cases, "numbers/QUANTITY" of findings."""
     return {
         f"numbers/{quantity}": {
             "data": {
@@ -284,7 +285,7 @@ def as_cases(groups: Mapping[str, Sequence[Number]]) -> dict[str, dict[str, Any]
 
 
 def series(found: Sequence[Number]) -> dict[str, list[Any]]:
-    """Columns of all numbers, for the figure and its CSV."""
+    """Return the columns of all numbers, for the figure and its CSV."""
     columns = {name: name for name in ("part", "quantity", "label", "unit", "printed", "computed")}
     columns |= {"uncertainty 95 %": "uncertainty", "computed / printed": "ratio"}
     return {column: [getattr(n, field) for n in found] for column, field in columns.items()}

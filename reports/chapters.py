@@ -110,7 +110,7 @@ CHAPTERS = (
 
 
 def subjects_of(chapter: Chapter, evidence: Evidence) -> dict[str, list[Case]]:
-    """The chapter's cases by subject, in the chapter's order; only subjects that have any."""
+    """Return the chapter's cases by subject, in the chapter's order; only subjects that have any."""
     present = by_subject(evidence.cases)
     return {subject: present[subject] for subject in chapter.subjects if subject in present}
 

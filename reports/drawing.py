@@ -68,12 +68,12 @@ class Figure:
     derived: Callable[[Data], Data] = field(default=lambda _: {})
 
     def available(self, data: Data) -> bool:
-        """True if every series that the plot needs is there and not empty."""
+        """Return True if every series that the plot needs is there and not empty."""
         return all(data.get(name) not in (None, [], {}) for name in self.needs)
 
 
 def complete(figure: Figure, data: Data) -> Data:
-    """The recorded series and those derived from them."""
+    """Return the recorded series and those derived from them."""
     return {**data, **figure.derived(data)}
 
 
@@ -102,7 +102,7 @@ def _in_symbols(text: str) -> str:
 
 
 def words(canvas: Canvas, caption: str) -> str:
-    """Alternative text: the caption, then axes and labelled series of every panel."""
+    """Return the alternative text: the caption, then axes and labelled series of every panel."""
     said = [caption]
     for axes in canvas.axes:
         title, x, y = (_plain(text) for text in (axes.get_title(), axes.get_xlabel(), axes.get_ylabel()))
@@ -182,7 +182,8 @@ def curves(
 
 
 def maps(fields: Mapping[str, str], *, side: str | None, unit: str, colours: str = "viridis") -> Draw:
-    """Maps (key to title) of arrays ``[i, j]`` along x and y, one colour bar each; zero is left blank."""
+    """Return the maps (key to title) of arrays ``[i, j]`` along x and y, one colour bar each; zero is left
+    blank."""
 
     def draw(canvas: Canvas, data: Data) -> None:
         panels = canvas.subplots(len(fields), 1, squeeze=False)[:, 0]

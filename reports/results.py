@@ -208,13 +208,15 @@ RECORDED = "recorded"
 
 
 def shown_status(case: Case) -> str:
-    """The status for people: a pass by a tolerance that was set from the result is "recorded", no pass."""
+    """Return the status for people: a pass by a tolerance that was set from the result is "recorded", no
+    pass."""
     recorded = case["status"] == "pass" and case["tolerance_reason"].startswith(RECORDED)
     return RECORDED if recorded else str(case["status"])
 
 
 def worst(cases: list[Case]) -> str:
-    """The status that decides about several cases: any error or failure outweighs, then what did not run."""
+    """Return the status that decides about several cases: any error or failure outweighs, then what did not
+    run."""
     present = {case["status"] for case in cases}
     return next(status for status in ("error", "fail", "unavailable", "pass") if status in present)
 
@@ -257,7 +259,7 @@ class Change:
 
 
 def compared(old: object, new: object) -> list[Change]:
-    """Every change from an old result file to a new one, by case id.
+    """Return every change from an old result file to a new one, by case id.
 
     A value counts as changed beyond the larger of its two reference uncertainties and a thousandth of its
     tolerance. Raises ResultFileError for what is no result file.

@@ -66,7 +66,7 @@ class Estimate(NamedTuple):
         )
 
     def error_bound(self, found: float) -> float:
-        """95 % bound of the error of a number found on a grid.
+        """Return the 95 % bound of the error of a number found on a grid.
 
         A normal distribution's, of which the bound needs one side alone where the number found is far off.
         Of the wider tails that make ``half_width`` one side is shorter still.

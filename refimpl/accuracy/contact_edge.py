@@ -42,7 +42,7 @@ def edge_faces(pressure: Array, clearance: Array, grid: Grid) -> tuple[float, ..
 
 
 def wall_pressure(pressure: Array, clearance: Array, grid: Grid) -> float:
-    """Return the highest pressure at a wall: of faces towards which it does not fall, beyond which the gap
+    """Return the maximum pressure at a wall: of faces towards which it does not fall, beyond which the gap
     hardly rises. There the continuous pressure is singular, however low the face's own is.
 
     >>> pressure, gap = np.array([[0.0, 0.0, 3.0, 2.0, 2.0]]), np.array([[4.0, 3.0, 0.0, 0.0, 0.0]])

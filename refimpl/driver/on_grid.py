@@ -100,5 +100,5 @@ class _ReportingCounter(Counter):
 
 
 def initial_guess(problem: Problem, pressure: Array, clearance: Array, approach: float) -> InitialGuess:
-    """The initial guess for a grid that is not coarser, from a state and its reported approach (m)."""
+    """Return the initial guess for a grid that is not coarser, from a state and its reported approach (m)."""
     return InitialGuess(pressure, clearance + (approach + problem.datum) - problem.gap, None)

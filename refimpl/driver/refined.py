@@ -39,7 +39,8 @@ _CONVERGED = (Status.CONVERGED, Status.CYCLED)
 
 
 def refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Progress | None) -> Solution:
-    """The finest grid's solution of a refinement, with the uncertainty from all grids and the summed cost.
+    """Return the finest grid's solution of a refinement, with the uncertainty from all grids and the summed
+    cost.
 
     When finer grids do not fit into memory, or exceed the largest size, the finest solved is returned as
     `ACCURACY_NOT_REACHED` with a warning that states the accuracy reached.

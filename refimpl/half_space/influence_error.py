@@ -51,7 +51,7 @@ def coefficient_error(
     wavelength: float | None = None,
     position: float | None = None,
 ) -> float:
-    """Largest relative error of the two neighbour coefficients in line with a slope.
+    """Return the largest relative error of the two neighbour coefficients in line with a slope.
 
     Parameters
     ----------

@@ -35,7 +35,8 @@ class ElementError:
 
 
 def element_error(slope: float, lower: Material, upper: Material | None = None) -> ElementError:
-    """Errors of flat influence coefficients on a wave of maximum ``slope`` (rad), up to 30 degrees.
+    """Return the errors of flat influence coefficients on a wave of maximum ``slope`` (rad), up to 30
+    degrees.
 
     One body alone when ``upper`` is None; in a pair the first-order parts enter as lower minus upper.
     Raises `InputError` for a slope beyond the table and for a negative Poisson's ratio.
@@ -61,7 +62,7 @@ def element_error(slope: float, lower: Material, upper: Material | None = None) 
 
 
 def steepest_tabulated() -> float:
-    """The table's largest slope (rad)."""
+    """Return the table's largest slope (rad)."""
     return math.radians(float(_table()[0][-1]))
 
 

@@ -119,7 +119,8 @@ def response_from_dict(stored: Mapping[str, Any]) -> Response:
 
 
 def least_parameters(scene: Scene) -> tuple[float, float]:
-    """Least parameters that are solved for (Pa, 1): too small to matter, large enough to differentiate."""
+    """Return the least parameters that are solved for (Pa, 1): too small to matter, large enough to
+    differentiate."""
     return _FLOOR * 1e-4 * scene.materials.reduced_modulus, _FLOOR * 1e-2
 
 

@@ -19,7 +19,8 @@ NAMES_SHOWN, NAME_SHOWN = 20, 40  # channels in a message, and characters of eac
 
 
 def choose(path: Path, form: str, reader: Any, given: Overrides) -> tuple[int, Any]:
-    """The channel of the given name or number, by default the first map of heights from the library's own.
+    """Return the channel of the given name or number, by default the first map of heights from the library's
+    own.
 
     Of several arrays it is the only one that is named as heights are. Raises InputError with all there are.
     """
@@ -42,7 +43,8 @@ def choose(path: Path, form: str, reader: Any, given: Overrides) -> tuple[int, A
 
 
 def chosen(path: Path, names: list[str], channel: str | int | None) -> int:
-    """Index of the channel of a name or number; None: the only one. Raises InputError with all there are."""
+    """Return the index of the channel of a name or number; None: the only one. Raises InputError with all
+    there are."""
     if channel is None and len(names) != 1:
         raise InputError("channel", None, f"the one that is heights in {path.name}: {_listed(names)}")
     if isinstance(channel, str):
@@ -86,20 +88,21 @@ def _is_height(channel: Any) -> bool:
 
 
 def taken(reader: Any, channel: Any) -> tuple[str, ...]:
-    """A note on the channel that was read where there are others."""
+    """Return a note on the channel that was read where there are others."""
     others = ", ".join(repr(str(c.name)) for c in reader.channels if c.name != channel.name)
     return (f"channel {str(channel.name)!r} was read; there are also {others}",) if others else ()
 
 
 def topography(reader: Any, index: int) -> Any:
-    """The library's map of a channel, of pixels of size 1 where the file states none."""
+    """Return the library's map of a channel, of pixels of size 1 where the file states none."""
     channel = reader.channels[index]
     given = {} if channel.physical_sizes is not None else {"physical_sizes": channel.nb_grid_pts}
     return reader.topography(channel_index=index, **given)
 
 
 def with_coordinates(reader: Any, channel: Any) -> Array | None:
-    """Points x, y, z of an array Z beside X and Y of its shape, a row or a column of it, as of a meshgrid."""
+    """Return the points x, y, z of an array Z beside X and Y of its shape, a row or a column of it, as of a
+    meshgrid."""
     indices = {str(c.name).casefold(): k for k, c in enumerate(reader.channels)}
     if str(channel.name).casefold() != "z" or not {"x", "y"} <= set(indices):
         return None

@@ -110,14 +110,15 @@ def check_level(level: object, repeats: bool) -> None:
 
 
 def fit_form(x: Array, y: Array, z: Array, level: str | int, pixel: tuple[float, float] = (1.0, 1.0)) -> Form:
-    """The form called ``level``: a name of DEGREES or CURVED, or a polynomial's total degree."""
+    """Return the form called ``level``: a name of DEGREES or CURVED, or a polynomial's total degree."""
     if isinstance(level, str) and level in CURVED:
         return _fit_curved(x, y, z, level, pixel)
     return fit(x, y, z, DEGREES[level] if isinstance(level, str) else level)
 
 
 def fit(x: Array, y: Array, z: Array, degree: int) -> Polynomial:
-    """The least-squares polynomial of total degree <= ``degree`` of ``z[i, j]`` at ``(x_i, y_j)``; -1: zero.
+    """Return the least-squares polynomial of total degree <= ``degree`` of ``z[i, j]`` at ``(x_i, y_j)``; -1:
+    zero.
 
     With Q_x, Q_y orthonormal polynomials on the points of each axis, the products Q_x^a Q_y^b are orthonormal
     on the rectangle, so the best fit is the projection on those with a + b <= degree; where points are

@@ -40,7 +40,7 @@ MARKLESS = ("mat", "nms", "hgt")  # read for their suffix alone
 
 
 def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
-    """Heights of a binary instrument file; ``head``: its first bytes. Raises InputError."""
+    """Return the heights of a binary instrument file; ``head``: its first bytes. Raises InputError."""
     library = library_for(path)
     if is_container(path):
         return _of_container(library, path, given)
@@ -60,7 +60,7 @@ def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
 
 
 def claimed_by_magic(path: Path, head: bytes) -> bool:
-    """True if the first bytes are the mark of an instrument's format; False without the library."""
+    """Return True if the first bytes are the mark of an instrument's format; False without the library."""
     try:
         library = library_for(path)
     except InputError:
@@ -90,7 +90,7 @@ def _formats(library: ModuleType, path: Path, head: bytes) -> list[str]:
 def read_as(
     library: ModuleType, path: Path, name: str, given: Overrides, source: Source, notes: tuple[str, ...] = ()
 ) -> RawHeights:
-    """Heights of one file, read as the format ``name`` from ``source``."""
+    """Return the heights of one file, read as the format ``name`` from ``source``."""
     with _quietly() as said, library.open_topography(source, format=name) as reader:
         index, channel = choose(path, name, reader, given)
         notes += taken(reader, channel)
@@ -169,7 +169,7 @@ def _of_container(library: ModuleType, path: Path, given: Overrides) -> RawHeigh
 
 
 def library_for(path: Path) -> ModuleType:
-    """SurfaceTopography. Raises InputError where it is not installed."""
+    """Import SurfaceTopography. Raises InputError where it is not installed."""
     try:
         import SurfaceTopography
         import SurfaceTopography.Exceptions

@@ -262,7 +262,8 @@ class MeasuredSurface(Surface):
         return self._central(grid.lengths)[2], self._oriented.reading.pixel
 
     def notes(self, grid: Grid) -> tuple[str, ...]:
-        """Notes on reading and preparation, the form subtracted, filled points and doubtful sizes."""
+        """Return the notes on reading and preparation, the form subtracted, filled points and doubtful
+        sizes."""
         name, window = self._file.name, self._crop(grid.lengths)
         z, form, rest = self._central(grid.lengths)
         pixel = self._oriented.reading.pixel

@@ -26,7 +26,8 @@ _Index = tuple[NDArray[np.intp], NDArray[np.intp]]
 
 
 def fill(heights: Array, pixel: tuple[float, float]) -> Array:
-    """``heights`` with its NaN replaced by the solution of the five-point Laplace equation between the rest.
+    """Return ``heights`` with its NaN replaced by the solution of the five-point Laplace equation between the
+    rest.
 
     A border point lacks the neighbour outside (no slope across the border). Every filled height lies between
     the lowest and the highest around its gap. One point must be there at least; ``pixel``: the two spacings.

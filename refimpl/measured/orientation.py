@@ -24,7 +24,7 @@ def check_orientation(mirror: object, rotate_deg: object, turn_over: object) -> 
 
 
 def checked_centre(centre: object) -> tuple[float, float]:
-    """The point (m) of the key ``centre``. Raises InputError."""
+    """Return the point (m) of the key ``centre``. Raises InputError."""
     allowed = "two lengths in m from the corner of the file's own area, (x, y)"
     if not isinstance(centre, list | tuple) or len(centre) != 2:
         raise InputError("centre", centre, allowed)

@@ -17,7 +17,7 @@ _UNIT = re.compile(rf"(?<!\w)({'|'.join(UNITS)})(?!\w)")
 
 
 def on_grid(path: Path, points: Array) -> tuple[Array, tuple[float, float]]:
-    """Heights ``[i, j]`` of points ``(x, y, z)`` and the pitch of their grid; absent points are NaN.
+    """Return the heights ``[i, j]`` of points ``(x, y, z)`` and the pitch of their grid; absent ones are NaN.
 
     The pitch is the median distance between neighbouring distinct coordinates. Raises InputError for a line
     scan, for points more than a tenth of the pitch off the grid and for two points in one place.
@@ -76,7 +76,7 @@ def _check_pitch(path: Path, pitch: tuple[float, float], stated: float, given: O
 def points_map(
     path: Path, points: Array, given: Overrides, header: tuple[str, ...] = (), notes: tuple[str, ...] = ()
 ) -> RawHeights:
-    """The map of points x, y, z in the given unit, or in the three that a line of the header names."""
+    """Return the map of points x, y, z in the given unit, or in the three that a line of the header names."""
     found: list[list[str]] = [_UNIT.findall(line) for line in header]
     named = next((units for units in found if len(units) == POINT), None)
     own = given.unit or (named[-1] if named else None)

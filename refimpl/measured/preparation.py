@@ -17,7 +17,7 @@ from refimpl.measured.reading import RawHeights
 from refimpl.surfaces.surface import positive
 
 NEIGHBOURHOOD = 5  # points an axis
-_RANK = 20  # of 25 points: the 80th percentile; four or five of them may be outliers
+_RANK = 20  # rank among 25 points: the 80th percentile; four or five of them may be outliers
 PERCENTILE_TO_RMS = 1.2816  # factor from the 80th percentile of absolute Gaussian distances to their rms
 MAD_TO_RMS = 1.4826  # from the median of absolute Gaussian distances to their rms
 _ROUNDING = 1e-9  # share of the rms height
@@ -97,8 +97,8 @@ def outlying(z: Array, known: Mask, times: float, repeats: bool = False) -> tupl
 
 
 def off_neighbours(z: Array, repeats: bool) -> Array:
-    """Distance of each point from its neighbours: the median, over the four lines through it, of that from
-    the mean of the two neighbours on the line. Lines that leave the map count as straight."""
+    """Return the distance of each point from its neighbours: the median, over the four lines through it, of
+    that from the mean of the two neighbours on the line. Lines that leave the map count as straight."""
     padded = np.pad(z, 1, mode="wrap") if repeats else np.pad(z, 1, mode="reflect", reflect_type="odd")
     nx, ny = z.shape
     total, low, high = np.zeros_like(z), np.full_like(z, np.inf), np.full_like(z, -np.inf)
@@ -154,7 +154,8 @@ def _filtered(
 
 
 def gaussian_filter(z: Array, pixel: tuple[float, float], wavelength: float, repeats: bool = False) -> Array:
-    """Mean of ``z`` with Gaussian weights, transmission 2^-(wavelength f)^2 at the spatial frequency f.
+    """Return the mean of ``z`` with Gaussian weights, transmission 2^-(wavelength f)^2 at the spatial
+    frequency f.
 
     Beyond the border there is nothing: the weights inside are scaled to a sum of one. ``repeats``: periodic.
     """

@@ -91,7 +91,7 @@ def _end() -> int | None:
 
 
 def serve() -> None:
-    """In the reader: answer until standard input ends. What parsers print goes nowhere."""
+    """Answer in the reader process until standard input ends. What parsers print goes nowhere."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     with os.fdopen(os.dup(1), "wb") as answers, open(os.devnull, "wb") as nowhere:
         os.dup2(nowhere.fileno(), 1)

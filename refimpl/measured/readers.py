@@ -46,7 +46,7 @@ def read(
     pixel_size: tuple[float, float] | None = None,
     channel: str | int | None = None,
 ) -> RawHeights:
-    """Heights of one file, x to the right and y up as seen from outside.
+    """Return the heights of one file, x to the right and y up as seen from outside.
 
     ``unit`` of the heights (a key of UNITS) and ``pixel_size`` (m) serve files that state none and override
     those that do, with a note. ``.npy`` and text without a header are plain tables: row i at x_i, column j at

@@ -82,7 +82,8 @@ class Overrides:
         pixel: tuple[float, float] | None,
         what: str = "does not state them",
     ) -> tuple[str, tuple[float, float], tuple[str, ...]]:
-        """Unit, pixel, notes, from what the file states (None: nothing). Raises InputError if one lacks."""
+        """Return the unit, pixel, notes, from what the file states (None: nothing). Raises InputError if one
+        lacks."""
         if (self.unit or unit) is None or (self.pixel_size or pixel) is None:
             raise InputError("unit, pixel_size", (self.unit, self.pixel_size), f"both: {name} {what}")
         notes = []
@@ -103,7 +104,7 @@ class Overrides:
 
 
 def read_or_refuse(path: Path, load: Callable[[], T]) -> T:
-    """``load()``, whose failures of any kind become one line of `InputError`."""
+    """Return ``load()``, whose failures of any kind become one line of `InputError`."""
     try:
         return load()
     except InputError:
@@ -113,13 +114,14 @@ def read_or_refuse(path: Path, load: Callable[[], T]) -> T:
 
 
 def first_line(error: object) -> str:
-    """One line of an error or a warning: its kind and its own words."""
+    """Return one line of an error or a warning: its kind and its own words."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()] or [""]
     return f"{type(error).__name__}: {printable(lines[0])[:160]}"
 
 
 def checked(path: Path, raw: Array) -> Array:
-    """Heights as doubles, missing ones NaN. Raises InputError for what is no map of real numbers."""
+    """Return the heights as doubles, missing ones NaN. Raises InputError for what is no map of real
+    numbers."""
     if raw.ndim != 2 or min(raw.shape) < 4 or raw.size > MAX_POINTS or raw.dtype.kind not in "fiu":
         what = f"{raw.dtype} of shape {raw.shape} in {path.name}"
         allowed = f"a 2-D table of real numbers, at least 4 an axis, at most {MAX_POINTS}"
@@ -132,7 +134,7 @@ def checked(path: Path, raw: Array) -> Array:
 
 
 def far_points(found: RawHeights) -> tuple[str, ...]:
-    """A note on points of one value far outside all others, which may stand for missing points."""
+    """Return a note on points of one value far outside all others, which may stand for missing points."""
     z, notes = found.heights[np.isfinite(found.heights)], []
     for value in {float(z.min()), float(z.max())} if z.size else ():
         others = z[z != value]

@@ -56,7 +56,7 @@ class RoughnessFit:
     misfit: tuple[float, float]
 
     def table(self, seed: int = 1) -> dict[str, object]:
-        """The surface as a table of a scene file."""
+        """Return the surface as a table of a scene file."""
         values = dict(self.values)
         table: dict[str, object] = {"kind": "self_affine" if self.kind == "self-affine" else self.kind}
         if self.kind == "gaussian":

@@ -34,7 +34,7 @@ _DECIMAL_COMMA = re.compile(r"^(0|\d+(?!,\d{3}\b)),(?=\d)")  # 1,024 may be thou
 
 
 def in_english(line: str) -> str:
-    """A header's line as the library knows it: English words, a decimal point, the unit at the end."""
+    """Return a header's line as the library knows it: English words, a decimal point, the unit at the end."""
     if (found := _STATED.fullmatch(line)) is None:
         return line
     word = next(word for word, spelled in zip(_WORDS, found.groups(), strict=False) if spelled)
@@ -44,7 +44,7 @@ def in_english(line: str) -> str:
 
 
 def encoding_of(path: Path) -> str:
-    """UTF-8 or UTF-16 by the file's mark, UTF-8 if it is valid, else Latin-1."""
+    """Return UTF-8 or UTF-16 by the file's mark, UTF-8 if it is valid, else Latin-1."""
     with path.open("rb") as file:
         if file.read(2) in (b"\xff\xfe", b"\xfe\xff"):
             return "utf-16"
@@ -58,7 +58,8 @@ def encoding_of(path: Path) -> str:
 
 
 def lines_of(path: Path, encoding: str) -> Iterator[tuple[int, str]]:
-    """Number and text of each line, one at a time: a list takes several times what their numbers do."""
+    """Yield the number and text of each line, one at a time: a list takes several times what their numbers
+    do."""
     with path.open(encoding=encoding) as file:
         lines = (
             (number, _spelled(part.strip(" \xa0")))

@@ -49,7 +49,7 @@ class TextTable:
         return {"# Width", "# Height"} <= {line.partition(":")[0] for line in self.header}
 
     def normalised(self) -> bytes:
-        """Header, numbers and comments in UTF-8, with blanks between and decimal points."""
+        """Return the header, numbers and comments in UTF-8, with blanks between and decimal points."""
         text, begun = io.BytesIO(), 0
         text.write("".join(f"{line}\n" for line in self.header).encode())
         for row, comment in (*self.comments, (len(self.rows), "")):
@@ -124,7 +124,7 @@ class _Layout:
         return {None: "blank", "\t": "tab"}.get(self.separator, f"'{self.separator}'")
 
     def cells(self, line: str) -> list[str]:
-        """The entries of a line, without a comment at its end."""
+        """Return the entries of a line, without a comment at its end."""
         line = line.split("#")[0] if not line.startswith("#") else line
         return [cell.strip() for cell in line.split(self.separator)]
 
@@ -145,7 +145,7 @@ class _Layout:
         return bool(_NUMBER.fullmatch(cell) or (self.separator != "," and _COMMA_NUMBER.fullmatch(cell)))
 
     def unknown(self, cells: Iterable[str]) -> list[str]:
-        """Entries that are neither numbers nor missing."""
+        """Return the entries that are neither numbers nor missing."""
         return [c for c in cells if c and c.lower() not in NOT_MEASURED and not self.is_number(c)]
 
     def is_data(self, line: str) -> bool:
@@ -160,7 +160,7 @@ class _Layout:
         return len(cells) == width and (not unknown or 2 * len(set(unknown)) < known)
 
     def value(self, cell: str) -> float:
-        """NaN of what is missing. Raises ValueError."""
+        """Return NaN for what is missing. Raises ValueError."""
         if not cell.isascii():
             raise ValueError(cell)
         try:

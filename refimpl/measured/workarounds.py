@@ -89,7 +89,7 @@ def _gwy_unit(field: bytes, key: bytes) -> str:
 
 
 def wyko_header(path: Path, header: tuple[str, ...]) -> tuple[str, ...]:
-    """The header of Wyko's text with all numbers as type 7, the one that the library sees, and a Mult.
+    """Return the header of Wyko's text with all numbers as type 7, the one that the library sees, and a Mult.
 
     Heights are in nm if the second flag of the first line is 1, else in Wavelength / Mult nm.
     """

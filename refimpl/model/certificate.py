@@ -233,7 +233,7 @@ def certify(
     normal = problem.elasticity.normal(operator, pressure)
     lower, upper = problem.displacements(operator, pressure, traction, slopes, normal=normal)
     box = Window.around((pressure != 0) | (traction != 0), margin=0)  # elsewhere the summands vanish
-    normal = normal[box.slices].copy()  # of a large grid every array counts
+    normal = normal[box.slices].copy()  # every array of a large grid counts
     found = problem.slopes(lower, upper, indentation)
     v = found.per_cosine_product(lower + upper)
     v += problem.gap

@@ -85,5 +85,5 @@ def perimeter_corrected_area(contact: Mask, grid: Grid) -> float:
 
 
 def plasticity_index(reduced_modulus: float, hardness: float, rms: float, length: float) -> float:
-    """Eq. (12): ``psi = 2.2 (E' / H) (sigma_e / length)``, the printed length being epsilon."""
+    """Return Eq. (12): ``psi = 2.2 (E' / H) (sigma_e / length)``, the printed length being epsilon."""
     return 2.2 * reduced_modulus / hardness * rms / length

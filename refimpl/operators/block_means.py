@@ -33,7 +33,7 @@ class BlockMeans:
             self._rests.append(KAPPA * 2**level / reduced)
 
     def continued(self, field: Array) -> Array:
-        """The means of a field that vanishes outside the contact, on the whole window."""
+        """Return the means of a field that vanishes outside the contact, on the whole window."""
         parts = [sums * weights for sums, weights in zip(self._sums(field), self._weights, strict=True)]
         found = parts.pop()
         while parts:

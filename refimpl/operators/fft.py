@@ -72,22 +72,22 @@ class FFTInfluence:
         self._from, self._to = zip(*placed, strict=True)
 
     def normal(self, pressure: Array) -> Array:
-        """``I[1/rho]`` applied to a pressure."""
+        """Return ``I[1/rho]`` applied to a pressure."""
         self.counter.add("normal", self._points)
         return self._convolve(pressure, self._normal_hat)
 
     def shear(self, traction: Array) -> Array:
-        """``I[s/rho^2]`` applied to a traction along the sliding direction."""
+        """Return ``I[s/rho^2]`` applied to a traction along the sliding direction."""
         self.counter.add("shear", self._points)
         return self._convolve(traction, self._shear_hat)
 
     def shear_across(self, traction: Array) -> Array:
-        """``I[t/rho^2]`` applied to a traction across the sliding direction."""
+        """Return ``I[t/rho^2]`` applied to a traction across the sliding direction."""
         self.counter.add("shear", self._points)
         return self._convolve(traction, self._across_hat)
 
     def coupled(self, ratio: float) -> Callable[[Array], Array]:
-        """The product ``I[1/rho] + ratio I[s/rho^2]`` of a pressure: both kernels in one."""
+        """Return the product ``I[1/rho] + ratio I[s/rho^2]`` of a pressure: both kernels in one."""
         hat = self._normal_hat + ratio * self._shear_hat
 
         def product(pressure: Array) -> Array:

@@ -80,7 +80,7 @@ class _Neighbours(NamedTuple):
 
     @classmethod
     def within(cls, squared: int, held: float) -> _Neighbours:
-        """Weights up to a squared distance, by one over the distance."""
+        """Return the weights up to a squared distance, by one over the distance."""
         along, across = np.indices((2 * _REACH + 1,) * 2).reshape(2, -1) - _REACH
         squares = along**2 + across**2
         near = (squares > 0) & (squares <= squared)
@@ -93,7 +93,7 @@ _TWENTY = _Neighbours.within(5, held=0.3)  # 0.25 to 0.5, or weights by its squa
 
 
 def extended(precondition: Apply, contact: Mask) -> Apply:
-    """The preconditioner with residuals continued beyond a contact, where that is worthwhile."""
+    """Return the preconditioner with residuals continued beyond a contact, where that is worthwhile."""
     return ExtendedPreconditioner(precondition, contact) if contact.size >= _WORTHWHILE else precondition
 
 

@@ -25,14 +25,15 @@ _SIGNS = {"normal": (1, 1), "tangential": (-1, 1)}  # signs of opposite offsets,
 
 
 def window(distance: Array) -> Array:
-    """Bell of Kaiser and Bessel, one at its centre, at distances in spacings."""
+    """Return the bell of Kaiser and Bessel, one at its centre, at distances in spacings."""
     squared = np.maximum(1 - (2 * distance / WIDTH) ** 2, 0.0)
     bell: Array = scipy.special.i0(_WINDOW_SHAPE * np.sqrt(squared)) / scipy.special.i0(_WINDOW_SHAPE)
     return bell * (squared > 0)
 
 
 def near_quarter(kind: str, shape: Shape) -> Array:
-    """The near part at the offsets from 0 to half of each circle, as `unit_table` has the whole kernel."""
+    """Return the near part at the offsets from 0 to half of each circle, as `unit_table` has the whole
+    kernel."""
     quarter = np.zeros(shape)
     near = _near(kind)
     n, m = min(shape[0], len(near)), min(shape[1], len(near))
@@ -41,7 +42,7 @@ def near_quarter(kind: str, shape: Shape) -> Array:
 
 
 def far_quarter(kind: str, shape: Shape) -> Array:
-    """The far part between points of the coarse grid, with a window undone at either end."""
+    """Return the far part between points of the coarse grid, with a window undone at either end."""
     x, y = (COARSER * np.arange(float(n + _TAPS)) for n in shape)
     along, across = (_filter(n, sign) for n, sign in zip(shape, _SIGNS[kind], strict=True))
     quarter: Array = along @ _far(kind, x[:, None], y) @ across.T

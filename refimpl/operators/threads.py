@@ -26,7 +26,7 @@ def allowed_threads() -> int:
 
 @contextmanager
 def plain_number_of_threads() -> Iterator[None]:
-    """In the block, the environment has whole numbers of threads; ducc0 asserts that they are."""
+    """Write whole numbers of threads into the environment, in the block; ducc0 asserts that they are."""
     before = {name: os.environ.get(name) for name in _NAMES}
     plain = {name: str(_number(said or "") or allowed_threads()) for name, said in before.items()}
     os.environ.update(plain)

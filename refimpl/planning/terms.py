@@ -85,7 +85,7 @@ class _Choice:
         self.effects = {name: estimate(scales) for name, estimate in ESTIMATES.items()}
 
     def terms(self, budget: float, for_mu: bool) -> tuple[Term, ...]:
-        """All terms; the budget is spent on coupling and slope terms first."""
+        """Return all terms; the budget is spent on coupling and slope terms first."""
         requested, effects = self.requested, self.effects
         open_terms: dict[str, float] = {}
         if requested.coupled is None and effects["coupled"] != NONE and not requested.slope_correction:

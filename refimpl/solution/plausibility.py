@@ -26,7 +26,8 @@ _LENGTHS = ("correlation_length", "short_cut")  # roughness of longer ones is a 
 
 
 def notes(solved: Evidence) -> tuple[Notice, ...]:
-    """Notes of implausible inputs and of surfaces; unresolved roughness has a named warning of its own."""
+    """Return the notes of implausible inputs and of surfaces; unresolved roughness has a named warning of its
+    own."""
     scene, grid = solved.scene, solved.problem.grid
     parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
     lines = (*implausible(scene, solved.plan), *scene.notes(grid))

@@ -24,7 +24,7 @@ Rule = Callable[["Numbers", "Quantity"], float | None]
 
 
 def own_parts(solution: Numbers, quantity: Quantity) -> float | None:
-    """The sum of the parts that are stated for the number; None without any, and where one is None."""
+    """Return the sum of the parts that are stated for the number; None without any, and where one is None."""
     parts = solution.uncertainty.get(quantity.name, {}).values()
     known = [part for part in parts if part is not None]
     return math.fsum(known) if 0 < len(known) == len(parts) else None

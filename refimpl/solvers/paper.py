@@ -129,7 +129,7 @@ class _Scheme:
         self._periodic_hat: Array = problem.elasticity.symbol(scipy.fft.rfft2(row).real)
 
     def result(self) -> SolverResult:
-        """Balance under the rule for tau's active set that all solvers share."""
+        """Solve the balance under the rule for tau's active set that all solvers share."""
         ended = iterate(self, self.problem, self.tolerance)
         every = (*self.trace.coarser, self.trace)
         counts = {
@@ -167,13 +167,13 @@ class _Scheme:
         vars(self).update(vars(copied))
 
     def solve(self, tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
-        """Balance with tau on an active set."""
+        """Solve the balance with tau on an active set."""
         self._approach = self.balance(self._approach, active)
         self.traction = active.traction(self.problem.friction, self.pressure, self._last_clearance)
         return self.settled
 
     def balance(self, approach: float | None, active: ActiveSet) -> float:
-        """(2) Iteration two: the approach at which N = P, by secants within a bracket; returns it (m)."""
+        """Find the approach (m) at which N = P, by secants within a bracket: iteration two, (2)."""
         if self.problem.approach is not None:
             self.normal_force(self.problem.approach, active)
             return self.problem.approach
@@ -198,7 +198,7 @@ class _Scheme:
         return approach
 
     def normal_force(self, approach: float, active: ActiveSet) -> float:
-        """(1) Iteration one: the contact at an assumed approach; returns N, Eq. (2)."""
+        """Find the contact at an assumed approach, and return N of Eq. (2): iteration one, (1)."""
         self.trace.approaches += 1
         self.settled, problem = True, self.problem  # independent of the approaches before
         inside: Mask = problem.gap < approach  # (1a) contact lies within kinematic interference

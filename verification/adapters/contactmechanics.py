@@ -26,7 +26,7 @@ _ITERATIONS = 5000
 
 
 def press(problem: ContactProblem, *, mean_stiffness: float | None = None) -> PublishedAnswer:
-    """Pressures on the periodic or free half-space, under a load or at an offset.
+    """Return the pressures on the periodic or free half-space, under a load or at an offset.
 
     ``mean_stiffness`` is ``stiffness_q0`` under a load; zero gives the negative control.
     """

@@ -86,7 +86,8 @@ class PublishedCode:
 
 
 def closure(problem: ContactProblem) -> float:
-    """Mean gap under the pressure, ``sum f (v - min v) / sum f``, at which the tolerance is met (m).
+    """Return the mean gap under the pressure, ``sum f (v - min v) / sum f``, at which the tolerance is met
+    (m).
 
     The relative gap is that over half the mean displacement under the pressure, ``depth``. No contact of load
     P in a domain has a smaller one than the square punch that contains it, 0.87 P / (E* max(Lx, Ly)); at an
@@ -115,5 +116,5 @@ def _flattening(problem: ContactProblem) -> float:
 
 
 def imported(name: str) -> ModuleType:
-    """A peer's module, as an untyped one: none of the peers ships type hints."""
+    """Return a peer's module, as an untyped one: none of the peers ships type hints."""
     return importlib.import_module(name)

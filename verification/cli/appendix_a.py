@@ -101,7 +101,7 @@ def _epilog(*names: str) -> str:
 
 
 def strip(options: argparse.Namespace) -> int:
-    """Displacements of a wavy boundary, correct to first order in its slope, and of a flat one."""
+    """Print the displacements of a wavy boundary, correct to first order in its slope, and of a flat one."""
     from appendix_a.strip import first_order
 
     with _by_option():
@@ -116,7 +116,7 @@ def strip(options: argparse.Namespace) -> int:
 
 
 def fem(options: argparse.Namespace) -> int:
-    """Displacements of a wavy boundary and of a flat one."""
+    """Print the displacements of a wavy boundary and of a flat one."""
     from appendix_a.fem.sinusoid import SOLVES, fem_json, sinusoid
 
     with _by_option(), _progress(SOLVES, "finite elements") as tick:
@@ -128,7 +128,7 @@ def fem(options: argparse.Namespace) -> int:
 
 
 def coefficient_map(options: argparse.Namespace) -> int:
-    """The versioned table of the error of flat coefficients, every Poisson ratio in it."""
+    """Write the versioned table of the error of flat coefficients, every Poisson ratio in it."""
     from appendix_a.fem.coefficient_map import check_complete
     from appendix_a.fem.map2d import POSITIONS, SLOPES_DEG, WAVELENGTHS, compute
 
@@ -172,7 +172,8 @@ def _displacements(document: Mapping[str, Any], remark: str) -> str:
 
 
 def wedge(options: argparse.Namespace) -> int:
-    """Stresses at every pair of `--r` and `--theta-deg`, in units of the face pressure, tension positive."""
+    """Print the stresses at every pair of `--r` and `--theta-deg`, in units of the face pressure, tension
+    positive."""
     import numpy as np
 
     from appendix_a.wedge import stresses

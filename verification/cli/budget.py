@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
 
 def document(budgets: Budgets) -> dict[str, object]:
-    """SI units; half-widths of 95 %; infinity, where a part is unbounded, for the caller to make null."""
+    """Return SI units; half-widths of 95 %; infinity, where a part is unbounded, for the caller to make
+    null."""
     return {
         "tolerances": dict(budgets.tolerances),
         "numbers": {number: _parts(part) for number, part in budgets.numbers.items()},
@@ -26,8 +27,8 @@ def document(budgets: Budgets) -> dict[str, object]:
 
 
 def table(budgets: Budgets) -> str:
-    """Parts of each number in per cent of it, the number with all of them, and per cents that it changes by
-    for one of a parameter."""
+    """Return the parts of each number in per cent of it, the number with all of them, and per cents that it
+    changes by for one of a parameter."""
     header = ["", *(QUANTITIES[number].symbol for number in budgets.numbers)]
     numbers = list(budgets.numbers.values())
     widths: dict[str, list[float | None]] = {

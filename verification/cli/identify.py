@@ -82,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def document(found: Identification) -> dict[str, object]:
-    """SI units; intervals of 95 %, shares as standard uncertainties; None for what is unbounded."""
+    """Return SI units; intervals of 95 %, shares as standard uncertainties; None for what is unbounded."""
     proposal = found.proposal
     return {
         "tau": _interval(found.values["tau"]),
@@ -155,7 +155,7 @@ def _cells(interval: Interval, unit: float = 1.0) -> list[str]:
 
 
 def table(found: Identification) -> str:
-    """Values, parts of their uncertainty, rows, laws and warnings."""
+    """Return the values, parts of their uncertainty, rows, laws and warnings."""
     scales = {name: _scaled(name) for name in found.values}
     values = [["", "value", "95 % interval"]]
     values += [[label, *_cells(found.values[name], unit)] for name, (label, unit) in scales.items()]

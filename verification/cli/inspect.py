@@ -109,7 +109,7 @@ def _theories(found: Inspection, E: float, nu: float, load: float) -> tuple[list
 
 
 def table(found: Inspection) -> str:
-    """The file and its parameters, in the units of the object."""
+    """Return the file and its parameters, in the units of the object."""
     from refimpl.measured.inspection import PARAMETERS
 
     doc = found.document()

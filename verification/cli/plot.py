@@ -60,7 +60,8 @@ def draw(solution: Solution, scene: Scene, path: Path) -> None:
 
 
 def hertz_of(scene: Scene, load: float) -> HertzSphere | None:
-    """The smooth, frictionless Hertz contact of a scene with a sphere; None for a scene without one."""
+    """Return the smooth, frictionless Hertz contact of a scene with a sphere; None for a scene without
+    one."""
     from refimpl.surfaces.shapes import Sphere
     from verification.exact import hertz
 
@@ -152,7 +153,8 @@ def legend_of(solution: Solution, hertz: HertzSphere | None) -> list[Patch | Lin
 
 
 def profile(axes: Axes, solution: Solution, view: View, hertz: HertzSphere | None, axis: int) -> None:
-    """Pressure, shear and, to the right, the gap on the line of elements through the peak, along one axis."""
+    """Draw pressure, shear and, to the right, the gap on the line of elements through the peak, along one
+    axis."""
     import numpy as np
 
     grid = solution.grid
@@ -191,7 +193,7 @@ def profile(axes: Axes, solution: Solution, view: View, hertz: HertzSphere | Non
 
 
 def pressure_histogram(axes: Axes, solution: Solution, view: View) -> None:
-    """Share of the contact by pressure; what is at the hardness is a line with its share."""
+    """Draw the share of the contact by pressure; what is at the hardness is a line with its share."""
     import numpy as np
 
     plastic = solution.details.plastic
@@ -206,7 +208,7 @@ def pressure_histogram(axes: Axes, solution: Solution, view: View) -> None:
 
 
 def gap_histogram(axes: Axes, solution: Solution, view: View) -> None:
-    """Share of the window by gap, outside of the contact, whose share the title states."""
+    """Draw the share of the window by gap, outside of the contact, whose share the title states."""
     import numpy as np
 
     contact = view.cut(solution.contact)

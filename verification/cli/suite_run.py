@@ -76,7 +76,7 @@ class Ended(KeyboardInterrupt):
 
 @contextmanager
 def unwinding(*numbers: signal.Signals) -> Iterator[None]:
-    """In the block, the first of these signals raises `Ended`; the next find the clean-up under way.
+    """Raise `Ended` at the first of these signals in the block; the next find the clean-up under way.
 
     A signal that is ignored stays so (`nohup`). Only the main thread can have it so.
     """
@@ -100,7 +100,7 @@ def unwinding(*numbers: signal.Signals) -> Iterator[None]:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """The options that name a solver and say what it can do."""
+    """Add the options that name a solver and say what it can do."""
     group = parser.add_argument_group(
         "bring your own solver",
         "Run the suite of verification.solver_suite with it, one case after the other whatever --tier\n"
@@ -113,7 +113,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def chosen(options: argparse.Namespace) -> bool:
-    """True if a solver is named. Raises `InputError` for its options without one."""
+    """Return True if a solver is named. Raises `InputError` for its options without one."""
     if options.solver is not None or options.exec is not None:
         return True
     for name in OPTIONS:

@@ -272,7 +272,7 @@ class _Line(StatusLine):
 
 
 def time_left(seconds: float | None) -> str:
-    """The time left in words.
+    """Return the time left in words.
 
     >>> time_left(None), time_left(59.4), time_left(3725)
     ('', '59 s left', '1 h 02 min left')

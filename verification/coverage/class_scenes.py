@@ -44,7 +44,7 @@ class _Draw(Dice):
         return spacing * self.log(low, high)
 
     def lengths(self) -> tuple[float, float]:
-        """Correlation lengths of a lay, three to ten to one within the shorter side."""
+        """Return the correlation lengths of a lay, three to ten to one within the shorter side."""
         side = min(self.size)
         across = side * self.log(0.05, 0.15)
         return min(across * self.log(3, 10), 0.9 * side), across

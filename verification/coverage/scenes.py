@@ -25,7 +25,7 @@ class Drawn:
 
 
 def random_scene(seed: int) -> Drawn:
-    """The scene of a seed; the classes take turns.
+    """Return the scene of a seed; the classes take turns.
 
     >>> random_scene(3).kind, random_scene(3).scene.load == random_scene(3).scene.load
     ('rough ball', True)
@@ -49,7 +49,7 @@ class _Dice(Dice):
         return rf.Material(E=self.log(2e9, 400e9), nu=float(self.rng.uniform(0.1, 0.49)))
 
     def friction(self, mean_pressure: float) -> rf.Friction:
-        """Neither, one or both of tau and beta; tau up to a third of the mean pressure."""
+        """Draw neither, one or both of tau and beta; tau up to a third of the mean pressure."""
         tau, beta = mean_pressure * self.log(0.003, 0.3), self.log(0.01, 0.4)
         kind = self.rng.random()
         return rf.Friction(tau=0.0 if kind < 0.1 or kind > 0.9 else tau, beta=0.0 if kind < 0.2 else beta)
@@ -57,7 +57,7 @@ class _Dice(Dice):
     def scene(
         self, upper: rf.Surface, lower: rf.Surface, load: float, pressure: float, periodic: bool = False
     ) -> rf.Scene:
-        """Both surfaces on this pair of materials; friction by the mean pressure to be expected (Pa)."""
+        """Join both surfaces on this pair of materials; friction by the mean pressure to be expected (Pa)."""
         return rf.Scene(
             upper=rf.Body(self.pair.upper, upper),
             lower=rf.Body(self.pair.lower, lower),
@@ -69,11 +69,11 @@ class _Dice(Dice):
         )
 
     def ball(self) -> Ball:
-        """A ball that touches on 0.08 to 0.3 of the side."""
+        """Return a ball that touches on 0.08 to 0.3 of the side."""
         return Ball(self.modulus, SIDE * self.log(2, 100), SIDE * self.log(0.08, 0.3))
 
     def phases(self) -> tuple[float, float]:
-        """Phases along x and y (rad)."""
+        """Return the phases along x and y (rad)."""
         return self.angle(), self.angle()
 
 

@@ -68,7 +68,7 @@ def refine(path: Path, seeds: Iterable[int], grids: Iterable[int], solve: Solve 
 
 
 def grid_solves(path: Path) -> Iterator[GridSolve]:
-    """Everything in the store; a last line cut short by a kill is skipped, and solved again."""
+    """Yield everything in the store; a last line cut short by a kill is skipped, and solved again."""
     if not path.exists():
         return
     for line in path.read_text(encoding="utf-8").splitlines():
@@ -90,7 +90,7 @@ def features_of(record: dict[str, Any]) -> GridFeatures:
 
 
 def refinements(path: Path) -> dict[int, list[GridSolve]]:
-    """The store's scenes by seed, coarse to fine."""
+    """Return the store's scenes by seed, coarse to fine."""
     found: dict[int, list[GridSolve]] = {}
     for one in grid_solves(path):
         found.setdefault(one.seed, []).append(one)

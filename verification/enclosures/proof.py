@@ -49,7 +49,7 @@ class Proof:
 
 
 def prove(known: EnclosedScene, contact: Mask) -> Proof:
-    """Raises `NotProven`, and `Unavailable` without python-flint."""
+    """Prove a scene; raises `NotProven`, and `Unavailable` without python-flint."""
     flint = arb()
     with flint.ctx.workprec(BITS):
         return _Balls(known, contact).proof()
@@ -66,7 +66,7 @@ class _Balls:
         self.outside = [(int(i), int(j)) for i, j in np.argwhere(~contact)]
 
     def proof(self) -> Proof:
-        """The balls, if their signs prove the set."""
+        """Return the balls, if their signs prove the set."""
         pressures, approach = self._solution()
         separations = [self._separation(e, pressures, approach) for e in self.outside]
         for what, elements, balls in (

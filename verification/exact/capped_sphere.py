@@ -1,4 +1,4 @@
-"""Frictionless contact of a paraboloid whose pressure ends at a hardness, from rings of uniform pressure.
+"""Frictionless contact of a paraboloid, its pressure capped at a hardness, from rings of uniform pressure.
 
 Sources: Johnson 1985, section 3.4 (the displacement of a uniformly loaded circle, in complete elliptic
 integrals). The two bounds are found by exchanging all rings that break a sign, with the approach as an
@@ -39,7 +39,8 @@ class Capped:
 
 
 def disc_displacement(r: Array, radius: Array) -> Array:
-    """Displacement (m) at ``r`` (m) by unit pressure on a circle of the given ``radius`` (m), times E*.
+    """Return the displacement (m) at ``r`` (m) by unit pressure on a circle of the given ``radius`` (m),
+    times E*.
 
     >>> float(disc_displacement(np.array([0.0]), np.array([1.0]))[0])   # 2 p a / E* at the centre
     2.0
@@ -84,7 +85,8 @@ def capped_sphere(sphere: Sphere, hardness: float, rings: int = 800) -> Capped:
 
 
 def plastic_limit(sphere: Sphere, hardness: float) -> tuple[float, float]:
-    """Radius and approach (m) where all of the contact is at the hardness: a uniformly loaded circle.
+    """Return the radius and approach (m) where all of the contact is at the hardness: a uniformly loaded
+    circle.
 
     ``a = sqrt(P / (pi H))``, and ``d = a^2 / 2R + 4 H a / (pi E*)`` at its edge.
     """

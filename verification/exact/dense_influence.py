@@ -41,15 +41,15 @@ class DenseInfluence:
         return self._pairs(self.direction + math.pi / 2)
 
     def normal(self, pressure: Array) -> Array:
-        """``I[1/rho]`` applied to a pressure."""
+        """Return ``I[1/rho]`` applied to a pressure."""
         return (self.normal_matrix @ pressure.ravel()).reshape(pressure.shape)
 
     def shear(self, traction: Array) -> Array:
-        """``I[s/rho^2]`` applied to a traction along the sliding direction."""
+        """Return ``I[s/rho^2]`` applied to a traction along the sliding direction."""
         return (self.shear_matrix @ traction.ravel()).reshape(traction.shape)
 
     def shear_across(self, traction: Array) -> Array:
-        """``I[t/rho^2]`` applied to a traction across the sliding direction."""
+        """Return ``I[t/rho^2]`` applied to a traction across the sliding direction."""
         return (self.shear_across_matrix @ traction.ravel()).reshape(traction.shape)
 
     def _pairs(self, angle: float | None) -> Array:

@@ -48,7 +48,7 @@ class Manufactured:
 def manufacture(
     M: int, seed: int, angle: float, oblique: bool, slope_correction: bool, hardness: float | None = None
 ) -> Manufactured:
-    """A random state on ``M x M`` elements sliding at ``angle`` (rad); slopes only if ``oblique``.
+    """Return a random state on ``M x M`` elements sliding at ``angle`` (rad); slopes only if ``oblique``.
 
     ``hardness`` is that of the lower body (Pa).
     """

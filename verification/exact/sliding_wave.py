@@ -116,7 +116,7 @@ class SlidingWave:
         return (high - low) / np.pi
 
     def pressure(self, x: ArrayLike) -> Array:
-        """p (Pa) at ``x`` (m) from a crest, within half a wavelength of it; any shape."""
+        """Return p (Pa) at ``x`` (m) from a crest, within half a wavelength of it; any shape."""
         g, (low, high) = self.exponent, self._angles
         psi = np.pi * np.asarray(x, dtype=float) / self.wavelength
         m = -g * low - (1 - g) * high

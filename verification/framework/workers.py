@@ -26,7 +26,7 @@ class Worker:
         self._pool = _process()
 
     def run(self, case: Case) -> Result:
-        """The case's verdict; never raises for what the case does."""
+        """Return the case's verdict; never raises for what the case does."""
         start = time.perf_counter()
         try:
             with interrupts_blocked():
@@ -44,7 +44,7 @@ class Worker:
 
 
 def run_all(cases: Sequence[Case], jobs: int, tick: Callable[[Result], None]) -> list[Result]:
-    """Results in the order of `cases`, from `jobs` workers; `tick` sees each as it is finished.
+    """Return the results in the order of `cases`, from `jobs` workers; `tick` sees each as it is finished.
 
     A worker takes the cases of a whole module, in their order, since those may share a cached solution.
     """

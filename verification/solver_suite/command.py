@@ -72,7 +72,7 @@ class Command:
 
     @classmethod
     def of(cls, line: str, abilities: Abilities, timeout: float) -> Command:
-        """From a command line, split like a shell does; no shell runs it.
+        """Parse a command line, split like a shell does; no shell runs it.
 
         Raises `InputError` also where its first word is no program.
         """
@@ -85,7 +85,7 @@ class Command:
         return cls(words, abilities, timeout)
 
     def solver(self) -> Command:
-        """Itself: a source for `verification.solver_suite.isolated`."""
+        """Return itself: a source for `verification.solver_suite.isolated`."""
         return self
 
     @property
@@ -161,7 +161,7 @@ def write_problem(problem: ContactProblem, directory: Path) -> None:
 
 
 def read_answer(directory: Path) -> Answer:
-    """The answer in a directory, for `ask` to judge. Raises `BadAnswer` where there is none."""
+    """Return the answer in a directory, for `ask` to judge. Raises `BadAnswer` where there is none."""
     table, archive, header = (directory / name for name in ("pressure.csv", "answer.npz", "answer.json"))
     for path in (table, archive, header):
         if path.exists() and not path.is_file():  # a pipe would be read for ever

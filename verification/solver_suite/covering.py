@@ -21,7 +21,7 @@ Combination = tuple[int, ...]
 
 
 def stored(name: str, design: Design) -> list[dict[str, object]]:
-    """Rows of the covering array of a design, from `FILE`."""
+    """Return the rows of the covering array of a design, from `FILE`."""
     levels = design.dimensions.values()
     return [
         dict(zip(design.dimensions, (of[int(k, 36)] for k, of in zip(row, levels, strict=True)), strict=True))
@@ -30,7 +30,8 @@ def stored(name: str, design: Design) -> list[dict[str, object]]:
 
 
 def covering(sizes: Sequence[int], seed: int, *, strength: int = 2, tries: int = 30) -> list[list[int]]:
-    """Rows of a covering array of dimensions with so many levels, by a greedy search among completions.
+    """Return the rows of a covering array of dimensions with so many levels, by a greedy search among
+    completions.
 
     Of ``tries`` random completions of a row the best is taken.
 
@@ -80,7 +81,7 @@ def _with(row: Sequence[int], k: int, strength: int) -> Iterator[Combination]:
 
 
 def text(name: str) -> list[str]:
-    """Rows of a design as `FILE` has them, from a search."""
+    """Return the rows of a design as `FILE` has them, from a search."""
     dimensions, seed, strength, tries, _ = (DESIGNS | FURTHER)[name]
     found = covering([len(levels) for levels in dimensions.values()], seed, strength=strength, tries=tries)
     return ["".join(np.base_repr(level, 36) for level in row) for row in found]

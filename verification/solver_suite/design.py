@@ -39,13 +39,13 @@ FARTHER = 40
 
 @cache
 def rows() -> dict[str, tuple[dict[str, Any], ...]]:
-    """Rows of the designs, by name; small grids first within each."""
+    """Return the rows of the designs, by name; small grids first within each."""
     return _rows_of(DESIGNS, _own_sizes())
 
 
 @cache
 def further_rows() -> dict[str, tuple[dict[str, Any], ...]]:
-    """Rows of the further designs that ``--thorough`` poses."""
+    """Return the rows of the further designs that ``--thorough`` poses."""
     return _rows_of(FURTHER, _own_sizes()[len(rows()["memory"]) :])
 
 
@@ -84,7 +84,7 @@ def _own_sizes() -> list[int]:
 
 
 def shape_of(row: Row) -> tuple[int, int]:
-    """Elements along x and y of the problem of a row."""
+    """Return the elements along x and y of the problem of a row."""
     n = int(row["elements"])
     across = {"wide": (n, max(3, n // 2)), "deep": (max(3, n // 2), n), "both": (n, max(3, 2 * n // 3))}
     return (across | {"row": (n, 1)}).get(row.get("shape", ""), (n, n))

@@ -160,7 +160,8 @@ def run(
     tick: Callable[[Result], None] = lambda result: None,
     left: Callable[[str], None] = lambda process: None,
 ) -> list[Result]:
-    """Results of the checks that match ``globs`` (all without any), with ``timeout`` seconds for one problem.
+    """Return the results of the checks that match ``globs`` (all without any), with ``timeout`` seconds for
+    one problem.
 
     ``among`` takes the place of the suite; ``name`` is what a refusal calls the solver. ``identified`` sees
     the solver's identity, ``begin`` and ``tick`` each check before and after, and ``left`` what the solver

@@ -94,7 +94,7 @@ def reply(
 
 
 def exit_text(status: int | None) -> str:
-    """An exit status in words; Python counts a signal as a negative one.
+    """Return an exit status in words; Python counts a signal as a negative one.
 
     >>> exit_text(3), exit_text(-11), exit_text(-40)
     ('exit status 3', 'killed by SIGSEGV', 'killed by signal 40')

@@ -27,7 +27,7 @@ _AT_HARDNESS = 1 - 1e-12
 
 
 def at_hardness(problem: ContactProblem) -> float:
-    """Pressure (Pa) from which an element counts as at the hardness; infinite without one."""
+    """Return the pressure (Pa) from which an element counts as at the hardness; infinite without one."""
     return np.inf if problem.hardness is None else problem.hardness * _AT_HARDNESS
 
 
@@ -45,7 +45,7 @@ class Residual(NamedTuple):
 
 
 def is_large(problem: ContactProblem) -> bool:
-    """True if a problem has too many elements for dense matrices."""
+    """Return True if a problem has too many elements for dense matrices."""
     return problem.gap.size > LARGEST**2
 
 
@@ -69,7 +69,7 @@ def _edges(problem: ContactProblem) -> tuple[float, float]:
 
 
 def by_pressure(problem: ContactProblem, pressure: Array) -> Array:
-    """Normal displacement ``a f`` (m) of both bodies by pressure alone."""
+    """Return the normal displacement ``a f`` (m) of both bodies by pressure alone."""
     if problem.periodic:
         return _filtered(pressure, symbol_at(*_waves(problem), problem.reduced_modulus))
     compliance = 1 / (np.pi * problem.reduced_modulus)
@@ -84,7 +84,7 @@ def _convolved(offsets: Array, field: Array) -> Array:
 
 
 def displacement(problem: ContactProblem, pressure: Array) -> Array:
-    """Normal displacement (m) by pressure and by the shear ``tau [f > 0] + beta f``."""
+    """Return the normal displacement (m) by pressure and by the shear ``tau [f > 0] + beta f``."""
     normal, coupling = by_pressure(problem, pressure), problem.coupling
     if coupling is None:
         return normal
@@ -103,7 +103,7 @@ def displacement(problem: ContactProblem, pressure: Array) -> Array:
 
 
 def symbols(problem: ContactProblem) -> tuple[Array, NDArray[np.complex128]]:
-    """Symbols of ``a`` and of ``a + beta c`` of a periodic problem (m/Pa)."""
+    """Return the symbols of ``a`` and of ``a + beta c`` of a periodic problem (m/Pa)."""
     waves, E, coupling = _waves(problem), problem.reduced_modulus, problem.coupling
     normal = symbol_at(*waves, E)
     if coupling is None:
@@ -125,7 +125,8 @@ def _filtered(field: Array, symbol: NDArray[np.complex128]) -> Array:
 
 
 def energy(problem: ContactProblem, pressure: Array) -> float:
-    """Elastic energy ``1/2 sum f (a f) dA`` (J). Raises ValueError for more than a double holds."""
+    """Return the elastic energy ``1/2 sum f (a f) dA`` (J). Raises ValueError for more than a double
+    holds."""
     with np.errstate(over="ignore", invalid="ignore"):
         stored = 0.5 * float(np.vdot(pressure, by_pressure(problem, pressure))) * problem.element_area
     if not np.isfinite(stored):
@@ -139,7 +140,7 @@ def stores_no_energy(problem: ContactProblem) -> bool:
 
 
 def residual(problem: ContactProblem, pressure: Array) -> Residual:
-    """Residuals of pressures (Pa) in the problem, recomputed from the pressures alone.
+    """Return the residuals of pressures (Pa) in the problem, recomputed from the pressures alone.
 
     gap : ``sum f (v - level) dA`` over the elastic energy; the level is ``min v`` under a load, and the
         approach where that is prescribed, with penetration counted on the whole load
@@ -192,7 +193,8 @@ def _two_sided_gap(f: Array, v: Array, hardness: float, approach: float | None) 
 
 
 def misfit(problem: ContactProblem, found: Array, exact: Array) -> float:
-    """``(f - f*) a (f - f*)`` over ``1/2 f* a f*``: the square of the relative error in the energy norm.
+    """Return ``(f - f*) a (f - f*)`` over ``1/2 f* a f*``: the square of the relative error in the energy
+    norm.
 
     It is at most the relative complementarity gap of ``f``, by the skewness of c for any coupling at fixed
     tau: with ``e = f - f*``, ``e' a e = e' (v - v*) <= f' (v - min v)``. (The periodic mean stores no energy;
@@ -205,7 +207,8 @@ def misfit(problem: ContactProblem, found: Array, exact: Array) -> float:
 
 
 def approach_of(problem: ContactProblem, pressure: Array) -> float:
-    """The approach (m) at which pressures solve the problem, as the problem counts it: mean of v over f.
+    """Return the approach (m) at which pressures solve the problem, as the problem counts it: mean of v over
+    f.
 
     Raises ValueError where there is no load to carry it.
     """
@@ -252,7 +255,7 @@ def _on(problem: ContactProblem, matrix: Array, contact: Mask) -> tuple[Array, f
 
 
 def eliminated(problem: ContactProblem, limit: int = 100) -> Array:
-    """The solution (Pa) by block principal pivoting, for small problems without tau.
+    """Return the solution (Pa) by block principal pivoting, for small problems without tau.
 
     Starts from all elements in contact, or all that overlap at a prescribed approach; drops those in tension
     and adds those that penetrate until there are none. Raises RuntimeError where that does not end within

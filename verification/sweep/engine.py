@@ -235,7 +235,7 @@ class _Meter:
         tick(Progress(self._done, total, 0, None))
 
     def count(self, run: Run, *, failed: bool) -> None:
-        """One run is finished."""
+        """Record one finished run."""
         self._done += not failed
         self._failed += failed
         self._worked += run.weight

@@ -79,7 +79,7 @@ def _with_own_columns(rows: Sequence[Row]) -> tuple[list[Row], list[str]]:
 
 
 def to_csv(rows: Sequence[Row]) -> str:
-    """CSV text with a header; floats in their shortest exact form, None as an empty field.
+    """Return CSV text with a header; floats in their shortest exact form, None as an empty field.
 
     >>> to_csv([]).split(",")[:3]
     ['key', 'realisation', 'grid']

@@ -76,7 +76,7 @@ def study_keys() -> dict[str, tuple[Key, ...]]:
 
 
 def uses(kind: str) -> dict[str, str]:
-    """Return, by full name, whether a study may vary a parameter and whether it may have a tolerance.
+    """Return by full name, whether a study may vary a parameter and whether it may have a tolerance.
 
     The scene has that kind of surface on its lower body, and no number that is zero.
 

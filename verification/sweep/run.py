@@ -85,8 +85,8 @@ class Run:
 
 @cache
 def code_digest() -> str:
-    """Digest of every source file of `refimpl` in this process's installation, and of the libraries' versions
-    that its last digits depend on.
+    """Return the digest of every source file of `refimpl` in this process's installation, and of the
+    libraries' versions that its last digits depend on.
     """
     root = Path(rf.__file__).parent
     digest = hashlib.sha256()
@@ -99,7 +99,7 @@ def code_digest() -> str:
 
 
 def file_digest(path: Path) -> str:
-    """Digest of a measured surface's file."""
+    """Return the digest of a measured surface's file."""
     return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
 
 
@@ -121,7 +121,7 @@ def execute(inputs: Mapping[str, Any]) -> tuple[Row, float]:
 
 
 def outcome(solution: rf.Solution, scene: rf.Scene) -> Row:
-    """The row of a solution of a scene."""
+    """Return the row of a solution of a scene."""
     contact, pair = solution.contact, solution.details.problem.pair
     index = None
     if pair.softer_hardness is not None:

@@ -74,7 +74,7 @@ class Store:
 
 
 def checksum(values: Sequence[Any]) -> str:
-    """64 bits of the SHA-256 of a row's values; floats by their shortest exact form.
+    """Return 64 bits of the SHA-256 of a row's values; floats by their shortest exact form.
 
     >>> checksum(["key", 1.0, None]) == checksum(["key", 1, None])
     False

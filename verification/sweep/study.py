@@ -51,7 +51,7 @@ class Study:
     unusable: Mapping[tuple[str, str], str] = field(default_factory=dict)
 
     def runs(self) -> Iterator[Run]:
-        """All runs, realisations outermost, then the axes in the order of `AXES`."""
+        """Yield all runs, realisations outermost, then the axes in the order of `AXES`."""
         files = self.measured
         axes = (*AXES, *self.own_axes)
         values = [self.vary.get(axis, (None,)) for axis in axes]

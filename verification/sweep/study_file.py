@@ -24,7 +24,7 @@ SOLVE_KEYS = ("method", "oblique", "slope_correction", "tolerance", "accuracy", 
 
 
 def read_study(path: str | Path, *, keep_going: bool = False) -> Study:
-    """The study of a TOML file, or a shipped study by its name (see `shipped_studies`).
+    """Return the study of a TOML file, or a shipped study by its name (see `shipped_studies`).
 
     With ``keep_going``, varied files that cannot be used are skipped, and listed in ``unusable``.
     The scene is a shipped one's name or a path relative to the file. Raises InputError naming the field.
@@ -39,7 +39,7 @@ def read_study(path: str | Path, *, keep_going: bool = False) -> Study:
 
 
 def shipped_studies() -> tuple[str, ...]:
-    """Names of the studies that ship as package data.
+    """Return the names of the studies that ship as package data.
 
     >>> "table3" in shipped_studies()
     True
@@ -49,7 +49,8 @@ def shipped_studies() -> tuple[str, ...]:
 
 
 def study_from_dict(table: Mapping[str, Any], folder: Path = Path(), *, keep_going: bool = False) -> Study:
-    """The study of a parsed TOML table, with all that its runs would be refused for refused (`posable`)."""
+    """Return the study of a parsed TOML table, refused for all that its runs would be refused for
+    (`posable`)."""
     _refuse_unknown("study", table, KEYS)
     name = table.get("scene")
     if not isinstance(name, str) or not name:

@@ -1,4 +1,4 @@
-"""Projected CG with a second bound: pressures end at the hardness, ``0 <= f <= H``.
+"""Projected CG with a second bound: pressures are capped at the hardness, ``0 <= f <= H``.
 
 CG works on the free elements, ``0 < f < H``. Elements that reach H leave them and keep that pressure; they
 come back where ``v`` exceeds the approach, as less pressure would do there. The load's target for the free
@@ -95,7 +95,7 @@ class CappedCG(ProjectedCG):
         return super().undecided(stiffness, among) if below_cap else self.capped.size
 
     def iterate(self) -> None:
-        """One step on the free elements, then the exchange of elements at both bounds."""
+        """Take one step on the free elements, then the exchange of elements at both bounds."""
         if self.free.any():
             self._step()
         self._separation = None

@@ -64,7 +64,8 @@ def _coarser(shape: Shape) -> Shape:
 
 
 def coarse_tolerance(shape: Shape) -> float:
-    """Residual of a coarse grid, below the error that the next grid's start has from interpolation.
+    """Return the residual of a coarse grid, below the error that the next grid's start has from
+    interpolation.
 
     >>> coarse_tolerance((256, 256)), coarse_tolerance((1024, 512))
     (0.001, 0.0005)

@@ -90,7 +90,7 @@ class LaggedTerms:
         return other
 
     def iterate(self) -> None:
-        """One CG step; the shear product of the old pressure is dropped."""
+        """Take one CG step; the shear product of the old pressure is dropped."""
         self._cg.iterate()
         self._of_pressure = None
 

@@ -137,7 +137,7 @@ class ProjectedCG:
         return int(np.count_nonzero(~certain if among is None else ~certain[among]))
 
     def iterate(self) -> None:
-        """One step of projected CG on the contact set, then the exchange of elements.
+        """Take one step of projected CG on the contact set, then the exchange of elements.
 
         At an approach the set may be empty: there is no step then, and elements that penetrate come back.
         """

@@ -132,7 +132,7 @@ def correction() -> Measured:
 
 
 def elastic_wave(slope_deg: float) -> Profiles:
-    """An elastic wave (nu = 0) under a rigid plane, mean pressure 0.3 p*."""
+    """Return an elastic wave (nu = 0) under a rigid plane, mean pressure 0.3 p*."""
     slopes, bodies = (math.tan(math.radians(slope_deg)), 0.0), (Elastic(1.0, 0.0), Elastic(1e6, 0.0))
     return Profiles("crest on flat", slopes, 0.0, (), *bodies, share=0.3, tau=0.0, beta=0.0)
 

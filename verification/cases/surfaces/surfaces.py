@@ -23,7 +23,7 @@ AREA = len(SEEDS) * LENGTHS**2  # in squared correlation lengths
 
 
 def ensemble() -> list[Array]:
-    """Realisations of unit rms on squares of 40 unit correlation lengths."""
+    """Return the realisations of unit rms on squares of 40 unit correlation lengths."""
     grid = Grid.square(float(LENGTHS), LENGTHS * PER_LENGTH)
     return [GaussianRoughness(1.0, 1.0, seed).heights(grid) for seed in SEEDS]
 
