@@ -115,7 +115,7 @@ def peak_memory() -> int:
 
 
 def return_free_memory() -> None:
-    """Give the system back what the C library keeps of freed arrays below 32 MB (glibc; nothing elsewhere)."""
+    """Give the system back what the C library keeps of freed arrays below 32 MB (only glibc does)."""
     with suppress(OSError, AttributeError, TypeError):
         ctypes.CDLL(None).malloc_trim(0)
 

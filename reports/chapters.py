@@ -53,7 +53,7 @@ CHAPTERS = (
         "values, surfaces with Eq. (9), solvers with exact solutions, manufactured states and each other. "
         "Orders of convergence are fitted over at least four grids.",
         ("kernels", "surfaces", "manufactured", "hertz", "reference", "balance", "sliding", "golden",
-         "bounds", "cross-check", "paper", "variational", "rectangles", "sweep"),
+         "bounds", "cross-check", "paper", "variational", "rectangles"),
     ),
     Chapter(
         "appendix",

@@ -39,6 +39,7 @@ a product takes 0.75 of the time for 256, 0.55 for 512, 0.48 for 1024.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 from refimpl.grid import Array, Grid, Shape, Window
@@ -46,6 +47,7 @@ from refimpl.grid.window import padded_length
 from refimpl.operators.coarse_grid import CoarseGrid
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.split_kernels import REACH, WIDTH, far_quarter, near_quarter, window
+from refimpl.operators.transforms import fourier, threads
 
 Quarter = Callable[[str, Shape], Array]
 """A kernel at the offsets from 0 to half of each circle, in elements of edge one."""
@@ -76,10 +78,13 @@ class NearFarInfluence(FFTInfluence):
 
     @property
     def symbol(self) -> Array:
-        """See `FFTInfluence`; the transform is not kept."""
-        found = super().symbol.copy()
-        del self._normal_hat
-        return found
+        """See `FFTInfluence`: every second frequency is that of the kernel laid twice around half of it."""
+        points = math.prod(self.circle)
+        self.counter.add("normal kernel", points // 2)
+        table = self._quarter("normal")
+        table = table[:-1] + table[:0:-1]
+        table = table[:, :-1] + table[:, :0:-1]
+        return fourier.plane(table, self.circle, threads(points)).real
 
     def normal(self, pressure: Array) -> Array:
         """``I[1/rho]`` applied to a pressure."""

@@ -62,14 +62,17 @@ def _near(kind: str) -> Array:
 def _far(kind: str, x: Array, y: Array) -> Array:
     """``Phi(r) / r`` or ``x Psi(r) / r^2``."""
     squared = x * x + y * y
-    inside = np.minimum(squared / RADIUS**2, 1.0)
+    at = squared < RADIUS**2
+    inside = squared[at] / RADIUS**2
     if kind == "normal":
-        near = np.polynomial.chebyshev.chebval(2 * inside - 1, _normal_inside())
-        return np.where(inside < 1, near, 1 / np.sqrt(np.maximum(squared, 1.0)))
+        found = 1 / np.sqrt(np.maximum(squared, 1.0))
+        found[at] = np.polynomial.chebyshev.chebval(2 * inside - 1, _normal_inside())
+        return found
     root = np.sqrt(1 - inside)
     beyond = root * np.cosh(SHAPE * root) - np.sinh(SHAPE * root) / SHAPE
-    share: Array = 1 - beyond / (np.cosh(SHAPE) - np.sinh(SHAPE) / SHAPE)
-    return x * share / np.maximum(squared, np.finfo(float).tiny)
+    found = x / np.maximum(squared, np.finfo(float).tiny)
+    found[at] *= 1 - beyond / (np.cosh(SHAPE) - np.sinh(SHAPE) / SHAPE)
+    return found
 
 
 @cache

@@ -14,10 +14,9 @@ from typing import Any
 import pytest
 
 from refimpl.errors import InputError
-from tests.verification.cli.children import Ended, one_line
+from tests.verification.cli.children import Ended, finished, one_line
 from tests.verification.cli.commands import refused, shown
 from tests.verification.sweep.own_cluster import cluster
-from verification.cases.paper.sweeps import finished
 from verification.framework.threads import THREADS, limited_to_one_thread
 from verification.sweep import engine
 from verification.sweep.export import to_csv
@@ -173,7 +172,7 @@ def test_a_cluster_gives_the_same_bytes(tmp_path: Path) -> None:
     """Its worker was not limited to one thread: its BLAS has as many as there are cores."""
     (tmp_path / "study.toml").write_text(STUDY.replace("10", "2") + '[solve]\nmethod = "dense"\n')
     study = f"{tmp_path}/study.toml"
-    with cluster(tmp_path, 1, {"OMP_NUM_THREADS": "3"}, drop=THREADS) as made:
+    with cluster(tmp_path, {"OMP_NUM_THREADS": "3"}, drop=THREADS) as made:
         tail = f"--store {tmp_path}/c.sqlite --csv {tmp_path}/c.csv"
         assert "finished now        8" in shown(f"sweep {study} --scheduler {made.address} {tail}")
     here = engine.sweep(read_study(study), tmp_path / "h.sqlite", workers=0)
@@ -192,7 +191,7 @@ def test_a_scheduler_that_is_not_there(address: str, tmp_path: Path, monkeypatch
 def test_a_lost_scheduler_is_one_line_and_the_sweep_goes_on_later(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text('scene = "table1-rough"\nrealisations = 400\n[vary]\ngrid = [12]\n')
     tail = ["sweep", "study.toml", "--store", "s.sqlite", "--scheduler"]
-    with cluster(tmp_path, 1) as made:
+    with cluster(tmp_path) as made:
         code = "from verification.cli import main; raise SystemExit(main())"
         child = subprocess.Popen(
             [sys.executable, "-c", code, *tail, made.address], cwd=tmp_path, text=True, stderr=subprocess.PIPE
