@@ -18,8 +18,7 @@ Each number is the intercept q of a line over the grids (`bayesian_line`), ``y_k
   Where waves of pressure or slopes are shorter than elements, bars stay wide. Where elements with half of the
   maximum pressure stand alone, nothing bounds it.
 
-The priors were fitted to random scenes (`verification.coverage`: seeds 1000 to 1199, `contact_edge`); their
-coverage was judged on the scenes of other seeds.
+The constants are fitted to random scenes and judged on others (`verification.coverage.fit`).
 """
 
 from __future__ import annotations

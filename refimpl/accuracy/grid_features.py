@@ -187,8 +187,7 @@ class GridFeatures:
 
 
 def pressure_peak(problem: Problem, state: State) -> Peak:
-    """Return the pressure's peak, which is not smooth on a sharp crest, nor where a wall's pressure may exceed
-    it."""
+    """Return the pressure's peak: not smooth on a sharp crest, nor where a wall's pressure may exceed it."""
     pressure, grid = state.pressure, problem.grid
     peak = highest(pressure, grid)
     walls = wall_pressure(pressure, state.clearance, grid) >= _WALL_RIVAL * state.max_pressure > 0

@@ -26,7 +26,10 @@ _SHEARED = "friction_coefficient", "friction_force"
 Parts = dict[str, float]
 Uncertainty = dict[str, Parts]
 
-_MARGIN = 10  # times the largest residual, within which of zero a pressure or clearance may change its sign
+# times the largest residual, within which of zero a pressure or clearance may change its sign: against solves
+# to 1e-10, elements of 61 of 63 loose solves (residuals of 1e-4 to 0.2) changed within 4.3, and all areas
+# were within their part
+_MARGIN = 10
 
 
 def reported_numbers(problem: Problem, state: State) -> dict[str, float]:

@@ -20,8 +20,9 @@ from refimpl.grid import Array, Grid, Mask
 _RIVAL, _CREST_RIVAL = constant("peak_rival"), constant("crest_rival")  # shares of the highest element
 _REACH = 2  # elements on either side of a maximum that fourth differences need
 _FAR = 5  # elements on either side of a maximum that sixth differences beside it need
-# sixth over fourth differences of a kink: 2.5 to 3, wherever it lies between elements; of a wave of number q
-# 4 sin(q h / 2)^2, so that waves of more than 3.5 elements are none
+# largest sixth over fourth differences of a kink at a share t between two elements, whose second differences
+# are (1 - t, t) and zero: 3 at t = 0 and 1/2, least at t = 2/5 and 3/5 with 2.5, and 2 % for curvature beside
+# it; of a wave of number q 4 sin(q h / 2)^2, so that waves of more than 3.5 elements are none
 _KINK_RATIO = 2.45, 3.05
 _LEAST_KINK = constant("least_kink")
 _ERROR_POWER = constant("peak_error_power")

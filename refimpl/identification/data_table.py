@@ -262,13 +262,13 @@ def check_rows(rows: Sequence[Row], unknowns: int = 2) -> tuple[Row, ...]:
     if mus and mus[-1] > MIXED_FRICTION * mus[0]:
         allowed = "forces in N alone (N and kN mixed?), mu as a number under mu (per cent?)"
         raise InputError("data: mu", f"{mus[0]:.3g} to {mus[-1]:.3g}", allowed)
+    _refuse_swapped(rows)
     if mus and median(mus) > MOST_FRICTION:
         raise InputError(
             "data: mu",
             f"{mus[0]:.3g} to {mus[-1]:.3g}",
             "friction and load in N (mN, kN mixed?), mu as a number (per cent?)",
         )
-    _refuse_swapped(rows)
     if all(row.u_mu > row.mu for row in rows):
         least = min(row.u_mu for row in rows)
         allowed = "uncertainties below mu itself (in per cent? columns swapped?)"

@@ -30,7 +30,7 @@ _STATED = re.compile(
     r"(?:\s*[\[(](\w+)[\])])?\s*[:=;\t]\s*(.*)",
     re.IGNORECASE,
 )
-_DECIMAL_COMMA = re.compile(r"^([-+]?\d+),(?=\d)")
+_DECIMAL_COMMA = re.compile(r"^(0|\d+(?!,\d{3}\b)),(?=\d)")  # 1,024 may be thousands
 
 
 def in_english(line: str) -> str:

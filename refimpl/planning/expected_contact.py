@@ -20,7 +20,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,13 +95,15 @@ def expected_contact(problem: Problem) -> ExpectedContact:
     approach = problem.approach or 2 * level
     near = gap < 2 * approach
     window = Window.around(near, margin=1).shape if near.any() else (0, 0)
-    seen = _FromHeights(approach, *_symmetries(coarse, problem), window)
-    clearance = np.maximum(gap - level, 0.0)
-    pressures = mean_pressure, _PEAKED * mean_pressure
-    expectation = _described(coarse, contact, np.ones(elements), clearance, pressures, seen)
+    symmetric, mirrored = _symmetries(coarse, problem)
+    weights, clearance = np.ones(elements), np.maximum(gap - level, 0.0)
+    seen = _described(coarse, contact, weights, clearance, mean_pressure, _PEAKED * mean_pressure)
     finer = [n / m for n, m in zip(problem.grid.shape, coarse.grid.shape, strict=True)]
     rows, columns = (math.ceil(f * n) for f, n in zip(finer, window, strict=True))
-    return replace(expectation, elements=round(math.prod(finer) * elements), window=(rows, columns))
+    seen["elements"] = round(math.prod(finer) * elements)
+    return ExpectedContact(
+        **seen, approach=approach, symmetric=symmetric, mirrored=mirrored, window=(rows, columns)
+    )
 
 
 def _coarse(problem: Problem) -> Problem:
@@ -150,29 +152,14 @@ def solved_contact(
     contact: Mask = pressure > 0
     loaded = pressure[contact]
     total = float(loaded.sum())
-    seen = _FromHeights(before.approach, before.symmetric, before.mirrored, before.window)
     weighted = float(np.sum(loaded**2)) / total
-    return _described(problem, contact, loaded, clearance, (total / loaded.size, weighted), seen)
-
-
-class _FromHeights(NamedTuple):
-    """What does not depend on the contact set."""
-
-    approach: float
-    symmetric: bool
-    mirrored: bool
-    window: tuple[int, int]
+    return replace(before, **_described(problem, contact, loaded, clearance, total / loaded.size, weighted))
 
 
 def _described(
-    problem: Problem,
-    contact: Mask,
-    loads: Array,
-    clearance: Array,
-    pressures: tuple[float, float],
-    seen: _FromHeights,
-) -> ExpectedContact:
-    """``loads`` weighs the elements in contact, in their order; ``pressures`` are mean and weighted one.
+    problem: Problem, contact: Mask, loads: Array, clearance: Array, mean_pressure: float, pressure: float
+) -> dict[str, Any]:
+    """What depends on the contact set; ``loads`` weighs its elements, in their order.
 
     Sums are not BLAS's: bits vary there.
     """
@@ -184,19 +171,17 @@ def _described(
     tangents = [_on(where, near, z)[0] for z in (lower, upper)]
     common = share * lower + (1 - share) * upper + (share - 0.5) * clearance[window.slices]
     along, across = _on(where, near, common)
-    elements, (mean_pressure, pressure) = loads.size, pressures
-    return ExpectedContact(
-        elements=elements,
-        patches=_patches(where, problem.grid.periodic),
-        mean_pressure=mean_pressure,
-        pressure=pressure,
-        slope_squared=float(np.sum(weights * (along**2 + across**2))),
-        least_slope=min(math.sqrt(float(np.sum(weights * tan**2))) for tan in tangents),
-        least_mean_slope=min(abs(float(np.sum(weights * tan))) for tan in tangents),
-        border=problem.grid.on_border(contact) / elements,
-        extent=math.prod(window.shape) / problem.grid.elements,
-        **seen._asdict(),
-    )
+    return {
+        "elements": loads.size,
+        "patches": _patches(where, problem.grid.periodic),
+        "mean_pressure": mean_pressure,
+        "pressure": pressure,
+        "slope_squared": float(np.sum(weights * (along**2 + across**2))),
+        "least_slope": min(math.sqrt(float(np.sum(weights * tan**2))) for tan in tangents),
+        "least_mean_slope": min(abs(float(np.sum(weights * tan))) for tan in tangents),
+        "border": problem.grid.on_border(contact) / loads.size,
+        "extent": math.prod(window.shape) / problem.grid.elements,
+    }
 
 
 def _on(where: Mask, problem: Problem, heights: Array) -> tuple[Array, Array]:

@@ -44,7 +44,8 @@ def implausible(scene: Scene, plan: Plan) -> Iterator[str]:
     if mean > 0 and scene.friction.jump > _STRONG * mean:
         yield (
             f"tau, {scene.friction.jump:.4g} Pa, is {scene.friction.jump / mean:.3g} times the mean contact "
-            "pressure to be expected: did you mean MPa (15 MPa is 15e6)?"
+            "pressure to be expected: did you mean MPa (15 MPa is 15e6), and "
+            f"is the load, {scene.load:.4g} N, right?"
         )
     expected = friction_coefficient_at(scene.friction, mean) * mean if mean > 0 else 0.0
     if 0 < scene.friction.jump < _WEAK * expected:

@@ -110,7 +110,8 @@ class NoiseLattice:
     def _refuse_too_many(self, x: Array, h: float, reach: int) -> None:
         extent, farthest = float(x.max() - x.min()), float(np.abs(x).max())
         if extent / h + 2 * reach + 2 > MAX_NODES:
-            self.refuse(extent / h / (MAX_NODES - 2 * reach - 2), f"{MAX_NODES} noise nodes an axis")
+            limit = f"{MAX_NODES} noise nodes an axis of {extent:.4g} m, is the side in m?"
+            self.refuse(extent / h / (MAX_NODES - 2 * reach - 2), limit)
         if farthest / h > MAX_FAR:
             raise InputError("offset", farthest, f"within {MAX_FAR:.3g} x {h:.3g} m: beyond, digits are lost")
 

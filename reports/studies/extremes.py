@@ -1,4 +1,4 @@
-"""Extremes: verdicts and digits by axis, limits found, lawful states, precision, conditioning."""
+"""Extremes: verdicts and digits by axis, limits found, lawful states, conditioning."""
 
 from __future__ import annotations
 
@@ -88,7 +88,6 @@ def build(document: Document) -> Exhibit:
             table(
                 "Limits found: where this implementation stops being a reference.", document["limits"], LIMITS
             ),
-            _causes(document["precision"]),
             table(
                 "Lawful states of 40 rough flats on 3 x 3 elements, counted by trying all contact sets.",
                 document["lawful states"],
@@ -117,12 +116,3 @@ def _by_axis(rows: Sequence[dict[str, Any]]) -> Table:
         found.append((axis, len(group), *counts, *least_and_median))
     head = ("axis", "states", *VERDICTS.values(), "fewest digits kept", "median")
     return Table("Verdicts by axis; digits of the right ones.", head, found)
-
-
-def _causes(precision: dict[str, Any]) -> Table:
-    head = ("quantity", *precision["arithmetic"], "cause", "what this code does")
-    rows = [
-        (name, *values, precision["cause"][name], precision["cure"][name] or "it is this code's form")
-        for name, values in precision["digits lost"].items()
-    ]
-    return Table("Decimal digits lost in each arithmetic, why, and the cure.", head, rows)

@@ -25,6 +25,7 @@ from verification.output.provenance import provenance
 from verification.output.result_files import read_result, write_result
 
 REFERENCE = 384  # elements along the longer side
+_KEPT = 3  # grids of a scene in the packed file at most
 WAVES = "short waves"  # part of an error bar
 FITTED = (
     "friction_coefficient",
@@ -63,6 +64,7 @@ def solve_all(path: Path, seeds: Iterable[int], kinds: Iterable[str] = tuple(CLA
     known = {(one["kind"], one["seed"]) for one in _records(path)}
     todo = [(kind, seed) for seed in seeds for kind in kinds if (kind, seed) not in known]
     progress = Progress(len(todo))
+    path.parent.mkdir(parents=True, exist_ok=True)
     with appending(path) as lines:
         for kind, seed in todo:
             lines.write(json.dumps(_solved(kind, seed)) + "\n")
@@ -111,16 +113,21 @@ def solved(path: Path) -> list[Solved]:
 def pack(scenes: Iterable[Solved], path: Path) -> None:
     """Write scenes as the result file that is committed: features in columns, as short as errors allow.
 
-    Of the grids every second one is kept, and the reference.
+    Of four grids every second one is kept, and the reference.
     """
     rows = []
     for one in scenes:
-        kept = *one.grids[one.seed % 2 : -1 : 2], one.grids[-1]
+        kept = one.grids if len(one.grids) <= _KEPT else (*one.grids[one.seed % 2 : -1 : 2], one.grids[-1])
         rows.append((one.kind, one.seed, one.exact, [_plain(grid) for grid in kept]))
     names = list(rows[0][3][0])
     columns = {name: [grid[name] for *_, grids in rows for grid in grids] for name in names}
     index = [[kind, seed, len(grids), dict(exact)] for kind, seed, exact, grids in rows]
     write_result({"provenance": provenance(), "scenes": index, "columns": columns}, path)
+
+
+def merged(stored: Iterable[Solved], new: Iterable[Solved]) -> list[Solved]:
+    """Return the stored scenes with new ones added, or in their place by class and seed."""
+    return list({(one.kind, one.seed): one for one in (*stored, *new)}.values())
 
 
 def unpacked(path: Path) -> list[Solved]:

@@ -24,7 +24,7 @@ from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.scatter import area_counts, edge_scatter, plastic_sizes, straight_share
 from refimpl.grid import Array
 from verification.coverage import classes
-from verification.coverage.building import Solved, pack, solve_all, solved, unpacked
+from verification.coverage.building import Solved, merged, pack, solve_all, solved, unpacked
 from verification.coverage.class_scenes import CLASSES
 from verification.coverage.likelihood import Fitted, fit
 from verification.framework.case import jsonable
@@ -250,7 +250,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         print(columns(classes.lines(judged["table"]), indent=""))
         return
     if lines.exists():
-        pack(solved(lines), FEATURES)
+        pack(merged(unpacked(FEATURES), solved(lines)), FEATURES)
     scenes = unpacked(FEATURES)
     written = document(scenes, json.loads(CONSTANTS.read_text(encoding="utf-8"))["constants"])
     CONSTANTS.write_text(json.dumps(jsonable(written), indent=1) + "\n", encoding="utf-8")

@@ -7,9 +7,9 @@ residuals are taken in 34 digits at last, where every step leaves ten digits mor
 from the one under test is sought by continuation in the load, or in beta.
 
 At fixed slopes and a fixed active set of tau the problem has one solution (`positive_definite`), so where the
-search starts cannot bend the answer. Where friction is strong, slopes may stand in several states: one that is
-right is one of these to the last digit, which does not prove it the only one. tau's active set is that of the
-returned traction; in a continuation it is the contact.
+search starts cannot bend the answer. Where friction is strong, slopes may stand in several states: one that
+is right is one of these to the last digit, which does not prove it the only one. tau's active set is that of
+the returned traction; in a continuation it is the contact.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ class Oracle:
     ) -> None:  # fmt: skip
         grid, periodic = scene.grid(M), scene.periodic
         self.scene, self.n, self.oblique, self.correction = scene, M**2, oblique, slope_correction
-        self.spacing = mp.mpf(scene.side) / M
+        self.spacing = mp.mpf(scene.lengths[0]) / M
         bodies = [(mp.mpf(body.material.E), mp.mpf(body.material.nu)) for body in (scene.lower, scene.upper)]
         x, y = (matrix * self.spacing for matrix in operators.tangential(M, periodic))
         cos, sin = mp.cos(mp.mpf(scene.sliding_direction)), mp.sin(mp.mpf(scene.sliding_direction))
@@ -130,6 +130,8 @@ class Oracle:
         """Unknowns of a pressure; gaps, approach and slopes follow from its displacements."""
         peak = float(f.max())
         length = float(sum(self.a) * self.spacing) * peak
+        if length == 0:
+            raise NotSettled("no digits")
         units = peak, length, length + float(max(self.h))
         n, contact = self.n, f > 0
         x = np.zeros((3 * n + 1, 1))
@@ -141,34 +143,35 @@ class Oracle:
             x[n : 3 * n, 0] = np.concatenate([tan.ravel() for tan in tangents])
         K = ((1 + x[n : 2 * n] ** 2) * (1 + x[2 * n : 3 * n] ** 2)) ** -0.5
         missed = self._residual(self.doubles, Guess(x, contact, units), support, 1.0, beta)
-        v = missed[:n] / K * np.where(contact, units[1], units[2])[:, None]
-        approach = float(np.sum(v[:, 0] * f) / f.sum())
-        x[:n] += np.where(contact[:, None], 0.0, abs(v - approach) / units[2])
+        v = (missed[:n] / K)[:, 0] * np.where(contact, length, units[2])
+        approach = float(v @ (f / f.sum()))
+        x[:n, 0] += np.where(contact, 0.0, abs(v - approach) / units[2])
         x[-1] = approach / length
         return Guess(x, contact, units)
 
     def _residual(self, on: dict[str, Exact], state: Guess, support: Mask, load: Any, beta: Any) -> Exact:
         """Residuals of Eqs (6) and (7), of the tangents, and of Eq. (2); a column for each of ``state.x``."""
         n, (peak, length, room) = self.n, state.units
-        x, inside = state.x, state.contact[:, None]
-        f, gap = x[:n] * (inside * peak), x[:n] * (~inside * room)
-        tan_x, tan_y, delta = x[n : 2 * n], x[2 * n : 3 * n], x[-1:] * length
+        x, inside = state.x, state.contact[:, None].astype(float)
+        f, gap = x[:n] * inside, x[:n] * (1 - inside)
+        tan_x, tan_y = x[n : 2 * n], x[2 * n : 3 * n]
         cos_x, cos_y = (1 + tan_x * tan_x) ** -0.5, (1 + tan_y * tan_y) ** -0.5
-        r = f * beta + support[:, None] * self.scene.friction.tau
+        r = f * beta + support[:, None] * (self.scene.friction.tau / peak)
         down, along, across = f, r, f * 0
         if self.correction:
             down, along, across = f - r * tan_x, r + f * tan_x, f * tan_y
         pressed, shear = on["A"] @ down, on["S"] @ along + on["T"] @ across
-        lower = pressed * on["a"][0] + shear * on["c"][0]
-        upper = pressed * on["a"][1] - shear * on["c"][1]
-        surface = on["mean"] + (upper - lower) * 0.5
-        units = np.where(inside, length, room)
-        contact = (lower + upper + cos_x * cos_y * (on["h"] - delta - gap)) / units
+        a, c = on["a"] * (peak / length), on["c"] * (peak / length)
+        lower, upper = pressed * a[0] + shear * c[0], pressed * a[1] - shear * c[1]
+        surface = on["mean"] + (upper - lower) * (0.5 * length)
         slopes = [tan - (on[D] @ surface) * self.oblique for tan, D in ((tan_x, "D_x"), (tan_y, "D_y"))]
+        unit = np.where(inside > 0, length, room)
+        share = length / unit
+        contact = (lower + upper) * share + cos_x * cos_y * (on["h"] / unit - x[-1:] * share - gap)
         if self.approach is not None:
             return np.concatenate([contact, *slopes, x[-1:] - on["approach"][0] / length])
-        carried = np.sum((f - r * tan_x) * cos_x * cos_y, axis=0, keepdims=True) * on["dA"][0]
-        return np.concatenate([contact, *slopes, carried / load - 1])
+        carried = np.sum((f - r * tan_x) * cos_x * cos_y, axis=0, keepdims=True)
+        return np.concatenate([contact, *slopes, carried * (on["dA"][0] * peak / load) - 1])
 
     def _step(self, state: Guess, support: Mask, load: Any, beta: Any, residual: Array) -> Array:
         """Newton's step for a residual: the Jacobian by complex steps, its rows and columns in one size."""
@@ -212,7 +215,7 @@ class Oracle:
 
     def _refined(self, state: Guess, support: Mask) -> Exactly:
         """Residuals in digits, steps by the Jacobian in doubles."""
-        load, law, n = self.scene.load, self.scene.friction, self.n
+        load, law = self.scene.load, self.scene.friction
         with mp.workdps(DIGITS):
             state = state._replace(x=_exact(state.x[:, 0])[:, None])
             for _ in range(REFINEMENTS):

@@ -9,9 +9,10 @@ from dataclasses import asdict
 from typing import Any
 
 from refimpl.operating_system import processor_time
+from verification.exact import lawful_states
 from verification.framework.case import jsonable
 from verification.output.provenance import provenance
-from verification.stress_tests import conditioning, precision, uniqueness
+from verification.stress_tests import conditioning
 from verification.stress_tests.axes import AXES, states
 from verification.stress_tests.limits import LIMITS, limit_of
 from verification.stress_tests.state import Extreme, Verdict
@@ -83,7 +84,7 @@ def summary(rows: Iterable[Row]) -> list[Row]:
 
 
 def document(rows: list[Row]) -> dict[str, Any]:
-    """The result file: states, table, heat map of precision, condition numbers, lawful states, limits."""
+    """The result file: states, table, condition numbers, lawful states, limits."""
     plain = jsonable(
         {
             "format": FORMAT,
@@ -92,9 +93,8 @@ def document(rows: list[Row]) -> dict[str, Any]:
             "limits": [limit._asdict() for limit in LIMITS],
             "not solved": Counter(row["kind"] for row in rows if row["kind"] is not None),
             "states": rows,
-            "precision": precision.table(),
             "conditioning": conditioning.table(),
-            "lawful states": [uniqueness.count(tau)._asdict() for tau in uniqueness.TAUS],
+            "lawful states": [lawful_states.count(tau)._asdict() for tau in lawful_states.TAUS],
         }
     )
     assert isinstance(plain, dict)

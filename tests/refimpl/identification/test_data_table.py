@@ -106,6 +106,7 @@ def test_a_file_needs_a_measured_surface() -> None:
         ("load,mu,u_mu\n1,0.3,0.1\n9e3,0.3,0.1\n3,0.3,0.1\n", "row 2 (9000 N)"),
         ("load,mu,u_mu\n0.3,2,0.1\n0.1,0.3,0.01\n", "mu rises"),
         ("load,mu,u_mu\n1,2,0.1\n3,0.05,0.01\n2,0.1,0.01\n", "friction falls"),
+        ("load,mu,u_mu\n0.147,1,0.1\n0.142,16,0.1\n0.141,40,0.1\n", "friction falls"),
         ("load,mu,u_mu\n1,139,0.1\n9,129,0.1\n20,5,0.1\n", "per cent?"),
         ("load,mu,u_mu\n1,0.3,1\n2,0.0059,1\n", "data: mu = '0.0059 to 0.3'"),
         ("load,mu,u_mu\n5,0.1,1\n\uff19,0.1,1\n", "line 3: load = '\uff19': expected a finite number"),

@@ -408,6 +408,7 @@ def test_an_end_judged_by_its_own_scatter() -> None:
         assert profile.interval(np.array([1.0, 0.0])) == pytest.approx((low, high), rel=1e-4)
 
 
+@pytest.mark.nightly
 def test_statistics_of_a_surface_cover_a_realisation_that_no_fit_draws() -> None:
     """Noise of 0.1 % would miss by tens of standard uncertainties: the scatter of realisations covers it."""
     scene = read_scene("table1-rough")

@@ -78,18 +78,6 @@ def test_points_off_a_grid_are_refused_with_a_number(tmp_path: Path) -> None:
         read(tmp_path / "map.xyz", unit="um")
 
 
-@pytest.mark.parametrize(
-    ("separator", "comma"), [(";", True), ("\t", True), (" ", True), (";", False), (",", False)]
-)
-def test_separators_and_decimal_commas(tmp_path: Path, separator: str, comma: bool) -> None:
-    z = np.where(np.isnan(MAP), 0.0, MAP)
-    rows = [separator.join(f"{v * 1e6:.5f}" for v in row) for row in z]
-    text = "\n".join(row.replace(".", ",") if comma else row for row in rows)
-    (tmp_path / "map.csv").write_text(text + "\n")
-    reading = read(tmp_path / "map.csv", unit="um", pixel_size=PIXEL)
-    np.testing.assert_allclose(reading.heights, z, rtol=0, atol=1e-20)
-
-
 @pytest.mark.parametrize("columns", [600, 3])
 def test_a_table_of_text_takes_at_most_four_times_its_numbers(columns: int, tmp_path: Path) -> None:
     numbers = np.arange(360_000.0).reshape(-1, columns) % 977 / 8
@@ -115,11 +103,6 @@ def test_a_refusal_says_what_was_found(tmp_path: Path, content: str, said: str) 
     (tmp_path / "a.csv").write_text(content)
     with pytest.raises(InputError, match=said):
         read(tmp_path / "a.csv", unit="um", pixel_size=PIXEL)
-
-
-def test_fortrans_exponents_and_rows_counted_from_one(tmp_path: Path) -> None:
-    (tmp_path / "a.txt").write_text("\n".join(f"{k}\t{k}.5D-1\t2.5d0\t3.5\t4.5" for k in (1, 2, 3, 4)))
-    assert read(tmp_path / "a.txt", "m", PIXEL).heights[1].tolist() == [0.25, 2.5, 3.5, 4.5]
 
 
 def test_blank_lines_between_blocks_of_points_are_no_end(tmp_path: Path) -> None:
@@ -364,6 +347,14 @@ def test_headers_in_german_french_and_spanish_are_read_as_english_ones(tmp_path:
     np.testing.assert_allclose(found.heights, z, rtol=0, atol=1e-20)
     np.testing.assert_allclose(found.pixel, PIXEL, rtol=1e-12)
     assert (found.unit, found.orientation) == ("nm", IMAGE)
+
+
+@pytest.mark.parametrize("width", ["1,024", "1.024,5", "1,024.5"])
+def test_edges_that_may_have_thousands_are_refused(tmp_path: Path, width: str) -> None:
+    head = f"Width: {width} um\nHeight: 12,5 um\nValue units: um\n"
+    (tmp_path / "a.txt").write_text(head + "1.5 2.5 0.5 3.5\n" * 5)
+    with pytest.raises(InputError, match="unit, pixel_size"):
+        read(tmp_path / "a.txt")
 
 
 def test_an_image_of_three_columns_is_no_table_of_points(tmp_path: Path) -> None:

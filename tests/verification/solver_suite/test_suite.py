@@ -83,6 +83,7 @@ def test_single_precision_that_says_so_is_held_to_what_it_says() -> None:
     assert {r.status for r in run(honest, noisy)} == {"pass"}
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 def test_a_program_in_c_passes_what_applies_to_it(tmp_path: Path) -> None:
     program = tmp_path / "solver"

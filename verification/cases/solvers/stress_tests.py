@@ -10,7 +10,8 @@ import numpy as np
 import refimpl as rf
 from refimpl.planning.plan import Method
 from verification.cases import Measured, case, family
-from verification.stress_tests import conditioning, positive_definite, precision, uniqueness
+from verification.exact import lawful_states
+from verification.stress_tests import conditioning, positive_definite
 from verification.stress_tests.axes import AXES, states
 from verification.stress_tests.state import Verdict
 from verification.stress_tests.study import Row, counts, run, run_state, summary
@@ -96,26 +97,12 @@ def lawful() -> Measured:
     Source: brute force over the 511 contact sets of 3 x 3 elements
     Tolerance: a count
     """
-    found = [uniqueness.count(tau) for tau in uniqueness.TAUS]
+    found = [lawful_states.count(tau) for tau in lawful_states.TAUS]
     names = ("none", "one", "several")
     data: dict[str, object] = {name: [getattr(c, name) for c in found] for name in names}
-    data |= {"tau / mean pressure": list(uniqueness.TAUS), "statuses": [c.statuses for c in found]}
-    broken = sum(c.wrong for c in found) + (found[0].one != uniqueness.SCENES)
+    data |= {"tau / mean pressure": list(lawful_states.TAUS), "statuses": [c.statuses for c in found]}
+    broken = sum(c.wrong for c in found) + (found[0].one != lawful_states.SCENES)
     return Measured(value=float(broken), data=data)
-
-
-@case("extremes/precision", metric="at_most", tolerance=1.0)
-def digits() -> Measured:
-    """Digits lost in float32, float64, long double and mpmath.
-
-    Claim: this code's kernels lose less than a digit in every arithmetic; the textbook's lose up to nine
-    Source: 80-digit values (mpmath)
-    Tolerance: 10 eps in each arithmetic
-    """
-    table = precision.table()
-    rows = (values for name, values in table["digits lost"].items() if "this code" in name)
-    own = [value for values in rows for value in values if value is not None]
-    return Measured(value=max(0.0, *own), data=table)
 
 
 @case("extremes/condition-numbers", metric="relative", tolerance=0.01, tier="full")

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 
-from verification.stress_tests.axes import contacts, grids, kernels, plane, topography, units
+from verification.stress_tests.axes import contacts, grids, kernels, plane, shapes, topography, units
 from verification.stress_tests.state import Extreme
 
 AXES: dict[str, Callable[[], Iterator[Extreme]]] = {
@@ -13,6 +13,7 @@ AXES: dict[str, Callable[[], Iterator[Extreme]]] = {
     "friction": contacts.friction,
     "topography": topography.topography,
     "grid": grids.grids,
+    "shape": shapes.shapes,
     "kernel": kernels.kernels,
     "wedge": plane.wedges,
     "finite elements": plane.finite_elements,

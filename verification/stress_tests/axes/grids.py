@@ -19,7 +19,7 @@ LINES = (1, 2, 4, 8, 16)
 
 
 @caught
-def against_dense(scene: rf.Scene, M: int) -> Judged:
+def against_dense(scene: rf.Scene, M: int | tuple[int, int]) -> Judged:
     """The production solver against the dense one, whose certificate is at rounding."""
     found = rf.solve(scene, M, tolerance=TOLERANCE)
     exact = rf.solve(scene, M, method="dense", tolerance=TOLERANCE)

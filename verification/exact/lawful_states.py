@@ -2,7 +2,7 @@
 
 A contact set S is lawful when the pressure that solves the linear equations on it, with tau acting on S and
 nowhere else, is positive on S and leaves no penetration outside. Slopes are neglected. With tau = 0 there is
-exactly one (`positive_definite`); with tau there may be none, one or several.
+exactly one (`verification.stress_tests.positive_definite`); with tau there may be none, one or several.
 """
 
 from __future__ import annotations
@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 
 import refimpl as rf
 from refimpl.grid import Array
+from refimpl.planning.plan import Method
 from verification.exact.textbook import normal_matrix, shear_matrix
 from verification.scenes.cross_checks import POLYMER, STEEL
-from verification.stress_tests.judge import SOLVERS
 
+SOLVERS: tuple[Method, ...] = ("fft", "dense")
 M = 3
 TAUS = (0.0, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
 """Over the mean pressure."""
