@@ -284,8 +284,8 @@ def test_a_run_that_is_ended_takes_the_solver_with_it(
     try:
         child.send_signal(how)
         assert child.wait(timeout=10) == (130 if how is signal.SIGINT else -how)
-        until(5, "the solver ended", lambda: not running(pid))
-        until(5, "no directory is left", lambda: not list((tmp_path / "tmp").iterdir()))
+        until(10, "the solver ended", lambda: not running(pid))
+        until(10, "no directory is left", lambda: not list((tmp_path / "tmp").iterdir()))
         _, err = child.communicate(timeout=10)  # whoever is left holds the pipes too
         assert err == ""
     finally:
