@@ -22,8 +22,8 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array, Mask
-from verification.stress_tests import exact_operators as operators
-from verification.stress_tests.exact_operators import DIGITS, Exact
+from verification.exact import exact_operators as operators
+from verification.exact.exact_operators import DIGITS, Exact
 
 STEPS, REFINEMENTS = 60, 20  # limits of Newton's steps in doubles, and in digits
 CLOSE, SETTLED = 1e-8, 1e-20  # largest last step: relative to the state; in digits, below a double's
@@ -181,9 +181,10 @@ class Oracle:
         rows = 1 / np.abs(jacobian).max(axis=1)
         columns = 1 / np.abs(jacobian * rows[:, None]).max(axis=0)
         try:
-            return columns * np.linalg.solve(jacobian * rows[:, None] * columns, -rows * residual)
+            step = np.linalg.solve(jacobian * rows[:, None] * columns, -rows * residual)
         except np.linalg.LinAlgError:
             raise NotSettled("singular equations") from None
+        return np.asarray(columns * step)
 
     def _moved(self, state: Guess, step: Exact, one: bool) -> tuple[Guess, bool]:
         """The state after a step; elements of negative pressure or gap are exchanged, all or the last one."""

@@ -37,7 +37,7 @@ from __future__ import annotations
 import numpy as np
 
 from refimpl.grid import Array
-from verification.stress_tests.exact_operators import normal, tangential
+from verification.exact.exact_operators import normal, tangential
 
 
 def symmetric_part(M: int, beta: float, ratio: float, slope: float = 0.0) -> Array:
