@@ -19,13 +19,8 @@ LINES = (1, 2, 4, 8, 16)
 
 
 @caught
-<<<<<<< HEAD
 def against_dense(scene: rf.Scene, M: int | tuple[int, int]) -> Judged:
-    """The production solver against the dense one, whose certificate is at rounding."""
-=======
-def against_dense(scene: rf.Scene, M: int) -> Judged:
     """Judge the production solver against the dense one, whose certificate is at rounding."""
->>>>>>> pages
     found = rf.solve(scene, M, tolerance=TOLERANCE)
     exact = rf.solve(scene, M, method="dense", tolerance=TOLERANCE)
     if exact.status not in GOOD:
