@@ -61,7 +61,7 @@ def rewritten(path: Path) -> tuple[str | io.BytesIO, tuple[str, ...]]:
 
 
 def _bare(text: bytes) -> ElementTree.Element:
-    """The elements that say what the map is: no name spaces, no empty numbers, no Record2."""
+    """Return the elements that say what the map is: no name spaces, no empty numbers, no Record2."""
     root = ElementTree.fromstring(text)
     for parent in list(root.iter()):
         parent.tag, parent.text = parent.tag.rpartition("}")[2], (parent.text or "").strip()

@@ -156,7 +156,7 @@ def _write(path: Path, header: Mapping[str, Any], body: bytes = b"") -> None:
 
 
 def _posed(solver: SolverUnderTest, problem: Any) -> tuple[dict[str, Any], bytes]:
-    """Header and body of the reply: checked numbers and pressures, or why there are none."""
+    """Return the header and body of the reply: checked numbers and pressures, or why there are none."""
     try:
         answer = ask(solver, problem)
     except Unavailable as missing:
@@ -171,7 +171,7 @@ def _posed(solver: SolverUnderTest, problem: Any) -> tuple[dict[str, Any], bytes
 
 
 def _alive(process: psutil.Process) -> bool:
-    """Whether a process is there and no zombie."""
+    """Return whether a process is there and no zombie."""
     try:
         return bool(process.is_running() and process.status() != psutil.STATUS_ZOMBIE)
     except psutil.Error:
@@ -179,7 +179,7 @@ def _alive(process: psutil.Process) -> bool:
 
 
 def _marked(mark: str) -> set[psutil.Process]:
-    """Living processes that carry the mark in their environment, whatever session they are in."""
+    """Return the living processes that carry the mark in their environment, whatever session they are in."""
     found = set()
     for process in psutil.process_iter():
         with suppress(psutil.Error, OSError):
