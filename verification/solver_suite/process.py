@@ -113,17 +113,18 @@ def serve(folder: str) -> None:
     numbers: queue.SimpleQueue[int] = queue.SimpleQueue()
     asked = os.fdopen(os.dup(0), encoding="ascii")
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-    threading.Thread(target=_listen, args=(asked, numbers, folder), daemon=True).start()
+    given = (asked, numbers, folder, os.environ[SOLVER_OF])  # a solver may clear its environment
+    threading.Thread(target=_listen, args=given, daemon=True).start()
     _answer(Path(folder), numbers)
 
 
-def _listen(asked: Iterable[str], numbers: queue.SimpleQueue[int], folder: str) -> None:
+def _listen(asked: Iterable[str], numbers: queue.SimpleQueue[int], folder: str, mark: str) -> None:
     with suppress(OSError):
         for line in asked:
             numbers.put(int(line))
     numbers.put(0)
     time.sleep(2 * PATIENCE)
-    for each in _marked(os.environ[SOLVER_OF]) - {psutil.Process()}:
+    for each in _marked(mark) - {psutil.Process()}:
         with suppress(psutil.Error):
             each.kill()
     shutil.rmtree(folder, ignore_errors=True)

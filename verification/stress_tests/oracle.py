@@ -22,14 +22,14 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array, Mask
-from verification.stress_tests import exact_operators as operators
-from verification.stress_tests.exact_operators import DIGITS, Exact
+from verification.exact import exact_operators as operators
+from verification.exact.exact_operators import DIGITS, Exact
 
 STEPS, REFINEMENTS = 60, 20  # limits of Newton's steps in doubles, and in digits
 CLOSE, SETTLED = 1e-8, 1e-20  # largest last step: relative to the state; in digits, below a double's
 TIE = 1e-26  # share of the maximum pressure or gap: signs nearer to zero are ties
 TINY = 1e-60  # complex step
-FIRST, RATIO, SOLVES = 1e-3, 10**0.5, 60  # continuation: first factor, largest ratio, limit
+FIRST, RATIO, SOLVES = 1e-3, 10**0.5, 60  # of a continuation: first factor, largest ratio, limit
 
 
 class NotSettled(ArithmeticError):
@@ -91,8 +91,7 @@ class Oracle:
         self.doubles = {name: values.astype(float) for name, values in self.exact.items()}
 
     def solve(self, pressure: Array, support: Mask, tangents: tuple[Array, Array] | None = None) -> Exactly:
-        """Return the exact state that belongs to a returned pressure and to tau's active set, both ``(M,
-        M)``.
+        """The exact state that belongs to a returned pressure and to tau's active set, both ``(M, M)``.
 
         Slopes are sought from the returned ``tangents`` on, or from those that the pressure leaves on flats.
         """
@@ -102,8 +101,7 @@ class Oracle:
         return self._refined(guess, support.ravel())
 
     def continued(self) -> Exactly:
-        """Return the exact state under a load by continuation in beta where that is above 1, else in the
-        load."""
+        """The exact state under a load by continuation in beta where that is above 1, else in the load."""
         load, beta = self.scene.load, self.scene.friction.beta
         known, ratio = min(1.0, 1 / beta) if beta > 1 else FIRST, RATIO
         by_beta = beta > 1
@@ -185,9 +183,10 @@ class Oracle:
         rows = 1 / np.abs(jacobian).max(axis=1)
         columns = 1 / np.abs(jacobian * rows[:, None]).max(axis=0)
         try:
-            return columns * np.linalg.solve(jacobian * rows[:, None] * columns, -rows * residual)
+            step = np.linalg.solve(jacobian * rows[:, None] * columns, -rows * residual)
         except np.linalg.LinAlgError:
             raise NotSettled("singular equations") from None
+        return np.asarray(columns * step)
 
     def _moved(self, state: Guess, step: Exact, one: bool) -> tuple[Guess, bool]:
         """Return the state after a step; elements of negative pressure or gap are exchanged, all or the last

@@ -24,10 +24,10 @@ RMS_SLOPES = (0.1, 0.3, 1.0, 2.0, 3.0)
 HARDNESS = [10.0**k for k in (-6, -3, -1, 0.1, 0.3, 1, 2, 3, 6)]
 """Over the mean pressure."""
 HEIGHTS: dict[str, Array] = {
-    "stripes at the Nyquist length": (-1.0) ** ROW,
-    "checkerboard at the Nyquist length": (-1.0) ** (ROW + COLUMN),
+    "stripes at the Nyquist length": np.asarray((-1.0) ** ROW),
+    "checkerboard at the Nyquist length": np.asarray((-1.0) ** (ROW + COLUMN)),
     "equal asperities": -((ROW % 3 - 1.0) ** 2) - (COLUMN % 3 - 1.0) ** 2,
-    "equal punches": 1.0 * ((ROW % 3 < 2) & (COLUMN % 3 < 2)),
+    "equal punches": np.where((ROW % 3 < 2) & (COLUMN % 3 < 2), 1.0, 0.0),
     "all but one element": -10.0 * ((ROW == 2) & (COLUMN == 3)),
 }
 """In units of 1e-7 m."""
