@@ -6,6 +6,8 @@ OUT := out
 # One BLAS thread: the runner and pytest use their own processes.
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
+# Bytecode is kept: a test that starts the program would compile it again.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: report results test lint setup clean nightly mutation site licences
 
@@ -24,8 +26,9 @@ results: $(READY)
 	$(BIN)/python -m verification.output.result_files reports/results/*.json
 	$(BIN)/python -m reports.results_page
 
-test: lint
-	$(BIN)/python -m pytest -n 2 --dist worksteal
+# Ruff and mypy beside the tests.
+test: $(READY)
+	$(MAKE) --no-print-directory lint & $(BIN)/python -m pytest -n 2 --dist worksteal && wait $$!
 
 lint: $(READY)
 	$(BIN)/ruff check .

@@ -32,9 +32,9 @@ for r in ran:
     print(f"{r.status:5} {r.id:36} {r.note if r.error is None else f'{r.error:.1e} of {r.tolerance:.1e}'}")
 
 shares = [max((r.error or 0) / (r.tolerance or 1), 1e-9) for r in ran]
-colours = ["C0" if r.status == "pass" else "C1" for r in ran]
 figure, axes = plt.subplots(figsize=(5.6, 0.35 * len(ran) + 1.2), layout="constrained")
-axes.barh([r.id.partition("/")[2] for r in ran], shares, color=colours)
+axes.barh([r.id.partition("/")[2] for r in ran], shares)
 axes.axvline(1, color="k", ls="--", lw=1)
 axes.set(xscale="log", xlabel="error over tolerance; below 1: pass")
+axes.xaxis.set_major_formatter("{x:.0e}")
 figure.savefig(PICTURE, dpi=100)

@@ -36,5 +36,5 @@ for axes, start, stop, colour, at, text in (
 ):
     axes.annotate("", stop, start, arrowprops={"arrowstyle": "-|>", "lw": 1.8, "color": colour})
     axes.annotate(text, at)
-side.legend(loc="lower center", fontsize=9, ncols=1)
+side.legend(loc="lower center", ncols=1)
 figure.savefig(PICTURE, dpi=100)

@@ -57,7 +57,7 @@ def printable(text: str) -> str:
 
 @contextmanager
 def within(place: str) -> Iterator[None]:
-    """Refusals from inside name the part of the scene that they are about.
+    """Make refusals from inside name the part of the scene that they are about.
 
     >>> with within("lower.material"):
     ...     require_number("E", -5, "a positive number", above=0)
@@ -72,7 +72,7 @@ def within(place: str) -> Iterator[None]:
 
 
 def as_double(value: Any) -> float:
-    """The number as a double; infinite where it is a whole number that no double holds.
+    """Return the number as a double; infinite where it is a whole number that no double holds.
 
     >>> as_double(10**400)
     inf

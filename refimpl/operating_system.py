@@ -6,6 +6,7 @@ Python that lacks them.
 
 from __future__ import annotations
 
+import ctypes
 import math
 import os
 import platform
@@ -50,7 +51,8 @@ def free_memory() -> int:
 
 
 def _left_in_groups() -> Iterator[int]:
-    """Bytes that the limit of each group above this process leaves; droppable file pages count as free."""
+    """Yield the bytes that the limit of each group above this process leaves; droppable file pages count as
+    free."""
     for folder in _groups():
         for limit, usage in _USAGE.items():
             with suppress(OSError, ValueError):  # "max" is no limit
@@ -59,7 +61,8 @@ def _left_in_groups() -> Iterator[int]:
 
 
 def _groups() -> Iterator[Path]:
-    """The folders of this process's memory group and of those above it; in a container, its own root."""
+    """Yield the folders of this process's memory group and of those above it; in a container, its own
+    root."""
     with suppress(OSError, ValueError):
         for line in _text(PROC / "self/cgroup").splitlines():
             _, controllers, place = line.split(":", 2)
@@ -83,7 +86,8 @@ def _text(path: Path) -> str:
 
 
 def _left_of_limits() -> Iterator[int]:
-    """Bytes that the limits of the address space and of the data segment leave, where psutil has them."""
+    """Yield the bytes that the limits of the address space and of the data segment leave, where psutil has
+    them."""
     process = psutil.Process()
     if hasattr(process, "rlimit"):
         used = process.memory_info()
@@ -111,6 +115,12 @@ def peak_memory() -> int:
         most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
         return most if sys.platform == "darwin" else 1024 * most
     return int(used.rss)
+
+
+def return_free_memory() -> None:
+    """Give the system back what the C library keeps of freed arrays below 32 MB (only glibc does)."""
+    with suppress(OSError, AttributeError, TypeError):
+        ctypes.CDLL(None).malloc_trim(0)
 
 
 @contextmanager
@@ -152,7 +162,7 @@ def limit_process(seconds: float, memory: int) -> None:
 
 @contextmanager
 def interrupts_blocked() -> Iterator[None]:
-    """Processes started in the block get no interrupts: one sent to the whole group is for this process.
+    """Keep interrupts from processes started in the block: one sent to the whole group is for this process.
 
     On Windows a console sends them to all.
     """
@@ -166,30 +176,10 @@ def interrupts_blocked() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def start_tracker() -> None:
-    """Start the tracker of semaphores (POSIX), so that processes started later share it with this one."""
-    if os.name == "posix":
-        from multiprocessing import resource_tracker
-
-        resource_tracker.ensure_running()
-
-
-def terminate_thread(thread: int) -> None:
-    """Send SIGTERM to a thread of this process, so that it wakes up; on Windows nothing does that."""
-    if hasattr(signal, "pthread_kill"):
-        signal.pthread_kill(thread, signal.SIGTERM)
-
-
-def lead_group() -> None:
-    """Make this process the head of a group of its own (POSIX)."""
-    if hasattr(os, "setsid"):
-        os.setsid()
-
-
-def in_group(process: int, leader: int) -> bool:
-    """Return whether a process belongs to the group of that leader; on Windows there are none."""
+def in_session(process: int, leader: int) -> bool:
+    """Return whether a process belongs to the session of that leader; on Windows there are none."""
     with suppress(OSError):
-        return hasattr(os, "getpgid") and os.getpgid(process) == leader
+        return hasattr(os, "getsid") and os.getsid(process) == leader
     return False
 
 

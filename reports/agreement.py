@@ -141,7 +141,8 @@ HERTZ = {"contact radius a0": ("A", 0.5), "peak pressure": ("p_max", 1.0)}  # nu
 
 
 def _smooth(quantity: str, label: str, cases: Cases) -> tuple[float, float | None]:
-    """Relative effects of the inputs and of R = 0.143 m on a number of smooth bodies, or on a slope."""
+    """Return the relative effects of the inputs and of R = 0.143 m on a number of smooth bodies, or on a
+    slope."""
     if quantity == "rms slope":
         return SLOPES[label], None
     if label not in HERTZ or INPUTS not in cases:
@@ -152,7 +153,8 @@ def _smooth(quantity: str, label: str, cases: Cases) -> tuple[float, float | Non
 
 
 def _effects(inputs: Mapping[str, Any], name: str, sigma: float) -> tuple[float, float | None]:
-    """Relative effects of the inputs and of R = 0.143 m in a roughness's column; none if not recorded."""
+    """Return the relative effects of the inputs and of R = 0.143 m in a roughness's column; none if not
+    recorded."""
     roughness = inputs.get("sigma_e (um)", ())
     columns = [k for k, s in enumerate(roughness) if math.isclose(s, sigma, abs_tol=1e-3)]
     if not columns:
@@ -166,7 +168,7 @@ def _of_inputs(found: Number, u: float, change: float | None) -> Number:
 
 
 def _sampling(quantity: str) -> tuple[float, float]:
-    """Relative standard deviations of our number and of the paper's over random surfaces."""
+    """Return the relative standard deviations of our number and of the paper's over random surfaces."""
     if quantity.startswith("scatter"):
         return (1 / math.sqrt(2 * (SURFACES - 1)),) * 2
     one = ONE_SURFACE.get(quantity, 0.0)
@@ -209,7 +211,7 @@ def column_of(sigma_e: float) -> str:
 
 
 def _half_digit(value: float) -> float:
-    """Half a unit of Table 3's last digit: printed are tenths, with two decimals below 10, else one.
+    """Return half a unit of Table 3's last digit: printed are tenths, with two decimals below 10, else one.
 
     >>> _half_digit(0.164), _half_digit(1.91)
     (0.0005, 0.005)
@@ -228,7 +230,7 @@ def fine(found: Iterable[Number]) -> list[Number]:
 
 
 def by_quantity(found: Iterable[Number]) -> dict[str, list[Number]]:
-    """Numbers by quantity, in order of first appearance; Table 3's on the fine mesh alone."""
+    """Return the numbers by quantity, in order of first appearance; Table 3's on the fine mesh alone."""
     groups: dict[str, list[Number]] = {}
     for n in compared(found):
         groups.setdefault(n.quantity, []).append(n)
@@ -236,7 +238,8 @@ def by_quantity(found: Iterable[Number]) -> dict[str, list[Number]]:
 
 
 def ratio_and_scatter(group: Sequence[Number]) -> tuple[float, float | None]:
-    """Geometric mean and geometric standard deviation of computed / printed; no deviation of one number.
+    """Return the geometric mean and geometric standard deviation of computed / printed; no deviation of one
+    number.
 
     >>> ratio_and_scatter([Number("", "", "", "", 1.0, value, 0.0, 0.0) for value in (2.0, 8.0)])
     (4.0, 2.665...)
@@ -247,8 +250,8 @@ def ratio_and_scatter(group: Sequence[Number]) -> tuple[float, float | None]:
 
 
 def verdict_of(group: Sequence[Number]) -> str:
-    """The verdict on a statement of these numbers: not confirmed where any has |E| > u. A number with several
-    readings is confirmed with conditions where only some of them agree.
+    """Return the verdict on a statement of these numbers: not confirmed where any has |E| > u. A number with
+    several readings is confirmed with conditions where only some of them agree.
     """
     within = [n.within for n in group]
     if not within:
@@ -268,7 +271,7 @@ def printed(found: Iterable[Number]) -> dict[tuple[str, ...], bool]:
 
 
 def as_cases(groups: Mapping[str, Sequence[Number]]) -> dict[str, dict[str, Any]]:
-    """The numbers by quantity in the shape of cases, "numbers/QUANTITY" of findings."""
+    """Return the numbers by quantity in the shape of cases, "numbers/QUANTITY" of findings."""
     return {
         f"numbers/{quantity}": {
             "data": {
@@ -284,7 +287,7 @@ def as_cases(groups: Mapping[str, Sequence[Number]]) -> dict[str, dict[str, Any]
 
 
 def series(found: Sequence[Number]) -> dict[str, list[Any]]:
-    """Columns of all numbers, for the figure and its CSV."""
+    """Return the columns of all numbers, for the figure and its CSV."""
     columns = {name: name for name in ("part", "quantity", "label", "unit", "printed", "computed")}
     columns |= {"uncertainty 95 %": "uncertainty", "computed / printed": "ratio"}
     return {column: [getattr(n, field) for n in found] for column, field in columns.items()}

@@ -53,7 +53,7 @@ CHAPTERS = (
         "values, surfaces with Eq. (9), solvers with exact solutions, manufactured states and each other. "
         "Orders of convergence are fitted over at least four grids.",
         ("kernels", "surfaces", "manufactured", "hertz", "reference", "balance", "sliding", "golden",
-         "bounds", "cross-check", "paper", "variational", "rectangles", "sweep"),
+         "bounds", "cross-check", "paper", "variational", "rectangles"),
     ),
     Chapter(
         "appendix",
@@ -110,7 +110,7 @@ CHAPTERS = (
 
 
 def subjects_of(chapter: Chapter, evidence: Evidence) -> dict[str, list[Case]]:
-    """The chapter's cases by subject, in the chapter's order; only subjects that have any."""
+    """Return the chapter's cases by subject, in the chapter's order; only subjects that have any."""
     present = by_subject(evidence.cases)
     return {subject: present[subject] for subject in chapter.subjects if subject in present}
 

@@ -87,7 +87,7 @@ def parts() -> list[Part]:
 
 
 def of_the_conversion() -> frozenset[str]:
-    """Errata that may be faults of the text's conversion from print, by equation."""
+    """Return the errata that may be faults of the text's conversion from print, by equation."""
     text = resources.files("reports").joinpath("paper.toml").read_text(encoding="utf-8")
     return frozenset(tomllib.loads(text)["conversion"])
 
@@ -133,8 +133,8 @@ def _judged(
 def _verdict(
     claim: Claim, cases: Sequence[Case], by_name: Mapping[str, Case], groups: Mapping[str, Sequence[Number]]
 ) -> str:
-    """The least favourable of the claim's own verdict and those that its numbers, its comparisons and its
-    cases give; none without evidence that passed.
+    """Return the least favourable of the claim's own verdict and those that its numbers, its comparisons and
+    its cases give; none without evidence that passed.
     """
     if claim.evidence and (not cases or worst(list(cases)) != "pass"):
         return NOT_ESTABLISHED
@@ -149,7 +149,7 @@ def _verdict(
 
 
 def ascending(text: str) -> str:
-    """The verdict on "a < b < c", with its numbers in place.
+    """Return the verdict on "a < b < c", with its numbers in place.
 
     >>> ascending("1.5 < 2 < 3"), ascending("2 < 1"), ascending("1 < n/a")
     ('confirmed', 'not confirmed', 'not established')
@@ -161,7 +161,8 @@ def ascending(text: str) -> str:
 
 
 def statements(claims: Iterable[Judged]) -> dict[str, list[Judged]]:
-    """The claims that each case is evidence of, by its id: the only verdicts on the paper that it has."""
+    """Return the claims that each case is evidence of, by its id: the only verdicts on the paper that it
+    has."""
     found: dict[str, list[Judged]] = {}
     for row in claims:
         for case in row.cases:

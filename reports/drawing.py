@@ -68,12 +68,12 @@ class Figure:
     derived: Callable[[Data], Data] = field(default=lambda _: {})
 
     def available(self, data: Data) -> bool:
-        """True if every series that the plot needs is there and not empty."""
+        """Return True if every series that the plot needs is there and not empty."""
         return all(data.get(name) not in (None, [], {}) for name in self.needs)
 
 
 def complete(figure: Figure, data: Data) -> Data:
-    """The recorded series and those derived from them."""
+    """Return the recorded series and those derived from them."""
     return {**data, **figure.derived(data)}
 
 
@@ -97,12 +97,12 @@ def svg(figure: Figure, data: Data, name: str = "figure", caption: str | None = 
 
 
 def _in_symbols(text: str) -> str:
-    """The text with Greek letters and units as symbols, unless it is the name of a case or a fault."""
+    """Return the text with Greek letters and units as symbols, unless it is the name of a case or a fault."""
     return text if _NAME.fullmatch(text) else symbols(text)
 
 
 def words(canvas: Canvas, caption: str) -> str:
-    """Alternative text: the caption, then axes and labelled series of every panel."""
+    """Return the alternative text: the caption, then axes and labelled series of every panel."""
     said = [caption]
     for axes in canvas.axes:
         title, x, y = (_plain(text) for text in (axes.get_title(), axes.get_xlabel(), axes.get_ylabel()))
@@ -117,7 +117,7 @@ def words(canvas: Canvas, caption: str) -> str:
 
 
 def _plain(text: str) -> str:
-    """Text without the marks of mathematics."""
+    """Return the text without the marks of mathematics."""
     return re.sub(r"[$\\{}]", "", text).strip()
 
 
@@ -182,7 +182,8 @@ def curves(
 
 
 def maps(fields: Mapping[str, str], *, side: str | None, unit: str, colours: str = "viridis") -> Draw:
-    """Maps (key to title) of arrays ``[i, j]`` along x and y, one colour bar each; zero is left blank."""
+    """Return the maps (key to title) of arrays ``[i, j]`` along x and y, one colour bar each; zero is left
+    blank."""
 
     def draw(canvas: Canvas, data: Data) -> None:
         panels = canvas.subplots(len(fields), 1, squeeze=False)[:, 0]
@@ -212,7 +213,8 @@ def _scale(axes: Axes, log: str) -> None:
 
 
 def _few_ticks(axes: Axes, x: np.ndarray[Any, np.dtype[np.float64]]) -> None:
-    """Ticks at the points of a logarithmic axis within two decades, where minor ones would be labelled.
+    """Set the ticks at the points of a logarithmic axis within two decades, where minor ones would be
+    labelled.
 
     Those too close to the last one labelled have no tick.
     """
@@ -227,5 +229,5 @@ def _few_ticks(axes: Axes, x: np.ndarray[Any, np.dtype[np.float64]]) -> None:
 
 
 def _numbers(series: Sequence[Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Floats with NaN for what was recorded as not available."""
+    """Return the floats with NaN for what was recorded as not available."""
     return np.array(series, dtype=float)

@@ -35,7 +35,7 @@ class Evidence:
 
 
 def gathered(run: object, committed: Mapping[str, Mapping[str, Any]]) -> Evidence:
-    """The run with the committed files, by name without suffix, that it does not replace.
+    """Return the run with the committed files, by name without suffix, that it does not replace.
 
     A case counts once: the run's own result, else that of the newest committed run in which it was judged.
     Committed runs of somebody else's solver are excluded: they are no evidence of this project's.
@@ -92,7 +92,7 @@ class Group:
 
 
 def groups(evidence: Evidence) -> list[Group]:
-    """All cases; where somebody else's solver was run, its own ones apart from this project's."""
+    """Return all cases; where somebody else's solver was run, its own ones apart from this project's."""
     if evidence.solver is None:
         return [Group("", evidence.cases)]
     theirs = [c for c in evidence.cases if c["origin"] is None]
@@ -111,7 +111,7 @@ def solver(results: Mapping[str, Any]) -> str | None:
 
 
 def rerun(command: str, case_id: str) -> str:
-    """The command that runs one case with the solver, its abilities and limits as in ``command``.
+    """Return the command that runs one case with the solver, its abilities and limits as in ``command``.
 
     >>> rerun("rough-friction verify --solver a:b --only 'x/*' --able load --json y", "solver/pins")
     'rough-friction verify --solver a:b --able load --only solver/pins'
@@ -135,7 +135,7 @@ NOT_KNOWN = "n/a"
 
 
 def revisions_of(evidence: Evidence) -> list[tuple[str, str, str]]:
-    """File, date and commit of every result file of the report; the run first."""
+    """Return the file, date and commit of every result file of the report; the run first."""
     rows = [("this run", *_made(evidence.run.get("provenance")))]
     for name, file in sorted(evidence.files.items()):
         provenance = file.get("provenance") if file.get("format") == FORMAT else newest(file)
@@ -144,7 +144,8 @@ def revisions_of(evidence: Evidence) -> list[tuple[str, str, str]]:
 
 
 def newest(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
-    """Provenance of a study's document, or of its newest run; else the document, if it is dated."""
+    """Return the provenance of a study's document, or of its newest run; else the document, if it is
+    dated."""
     listed = [entry for value in document.values() if isinstance(value, list) for entry in value]
     records = [
         item["provenance"]
@@ -197,7 +198,7 @@ def departures(
 
 
 def _of_case(case: Case, row: Mapping[str, Any] | None) -> Iterator[tuple[str, str]]:
-    """Kinds of departure of a case, each with the case's id and both values."""
+    """Yield the kinds of departure of a case, each with the case's id and both values."""
     id = case["id"]
     if row is None:
         yield "cases that this version does not have", id

@@ -58,8 +58,8 @@ class Exhibit:
 
 
 def as_csv(figure: Figure, data: Data) -> str:
-    """All series of the data as CSV, the figure's own first: lists as columns, mappings as two columns,
-    arrays row by row; numbers to six digits.
+    """Return all series of the data as CSV, the figure's own first: lists as columns, mappings as two
+    columns, arrays row by row; numbers to six digits.
 
     >>> from reports.drawing import curves
     >>> pair = curves("*", "", "h", {"error": "e"}, xlabel="", ylabel="")
@@ -84,12 +84,12 @@ def as_csv(figure: Figure, data: Data) -> str:
 
 
 def _six(value: Any) -> Any:
-    """Six digits of a float, as many as a result is recorded with for figures."""
+    """Return the six digits of a float, as many as a result is recorded with for figures."""
     return f"{value:.6g}" if isinstance(value, float) else value
 
 
 def csv_address(text: str) -> str:
-    """The CSV as a ``data:`` address."""
+    """Return the CSV as a ``data:`` address."""
     return f"data:text/csv;charset=utf-8,{quote(text, safe=_UNQUOTED)}"
 
 
@@ -120,7 +120,8 @@ class Album:
         self._sheet = StyleSheet()
 
     def add(self, figure: Figure, data: Data, title: str = "") -> Mapping[str, Any] | None:
-        """The figure for the page; None for one that is on the page already, or whose series are missing.
+        """Return the figure for the page; None for one that is on the page already, or whose series are
+        missing.
 
         A figure that is shown has ``svg``, ``caption``, ``name``, and ``csv``: an address of all data of its
         case, or a link to the figure, ``table``, that has them. ``title`` is the case's.

@@ -19,7 +19,7 @@ READINGS = ("self", "in line", "across")  # ends of the names of the readings of
 
 
 def by_claim(cases: Iterable[Case]) -> dict[str, Case]:
-    """Cases by id without "-full": the long case where it passed, else the quick one."""
+    """Return the cases by id without "-full": the long case where it passed, else the quick one."""
 
     def preference(case: Case) -> int:
         long = str(case["id"]).endswith("-full")
@@ -48,7 +48,7 @@ def filled(text: str, cases: Mapping[str, Case]) -> str:
 
 
 def note(case: Case) -> str:
-    """The first statement of a case's note.
+    """Return the first statement of a case's note.
 
     >>> note({"data": {}, "note": "1 (of 2; 3) by Eq. (1); more. And more"})
     '1 (of 2; 3) by Eq. (1)'
@@ -57,18 +57,18 @@ def note(case: Case) -> str:
 
 
 def plain_note(case: Case) -> str:
-    """A case's note without the verdict with which older result files begin it."""
+    """Return a case's note without the verdict with which older result files begin it."""
     text: str = case["note"]
     return text.removeprefix(f"{case['data'].get('verdict')}: ")
 
 
 def fields(text: str) -> list[tuple[str, str]]:
-    """The cases and keys that a text names."""
+    """Return the cases and keys that a text names."""
     return [(case.strip(), key.strip()) for case, key, _ in _FIELD.findall(text)]
 
 
 def number(case: Case, key: str) -> float | None:
-    """The number of a case under a key; None where it is missing or no number."""
+    """Return the number of a case under a key; None where it is missing or no number."""
     if key in ("value", "error"):
         found: Any = case[key]
     elif key in ("#below 2", "#readings"):
@@ -93,7 +93,7 @@ def _step_by_step(data: Any, steps: list[str]) -> Any:
 
 
 def _readings(data: Mapping[str, Any], *, below: bool) -> int | None:
-    """Number of readings of "less than 2%", or share that holds (per cent)."""
+    """Return the number of readings of "less than 2%", or share that holds (per cent)."""
     values = [
         v for name, row in data.items() if name.endswith(READINGS) and isinstance(row, list) for v in row
     ]

@@ -30,7 +30,7 @@ def render(
     progress: Callable[[str], None] = lambda _: None,
     departures: Sequence[str] = (),
 ) -> str:
-    """The page of a run, with committed result files by name, and what changed against an older run.
+    """Return the page of a run, with committed result files by name, and what changed against an older run.
 
     ``progress`` is called with every case and figure before drawing. The first page has the ``departures``.
     Raises ResultFileError (a ValueError) for anything but result files.
@@ -84,7 +84,7 @@ def render(
 
 
 def _own(evidence: Evidence, picture: Any) -> dict[str, Any]:
-    """Sections of a report on this project's own code beside its cases."""
+    """Return the sections of a report on this project's own code beside its cases."""
     claims = judged(evidence.cases, evidence.errata)
     numbers = agreement.numbers(by_claim(evidence.cases))
     return {
@@ -105,7 +105,7 @@ def _own(evidence: Evidence, picture: Any) -> dict[str, Any]:
 
 
 def anchor(case_id: str) -> str:
-    """The fragment that links to a case; different ids have different ones.
+    """Return the fragment that links to a case; different ids have different ones.
 
     >>> anchor("hertz/peak-order"), anchor("a.b")
     ('case-hertz.peak-order', 'case-a_2e_b')
@@ -115,7 +115,7 @@ def anchor(case_id: str) -> str:
 
 
 def label(text: str) -> str:
-    """A fragment of letters, digits and hyphens.
+    """Return a fragment of letters, digits and hyphens.
 
     >>> label("Fig. 6(a)")
     'fig-6-a'
@@ -124,7 +124,7 @@ def label(text: str) -> str:
 
 
 def facts(data: Mapping[str, Any], most: int = 12) -> list[tuple[str, str]]:
-    """The single numbers and texts that a case recorded, and its small tables of them, ready to print.
+    """Return the single numbers and texts that a case recorded, and its small tables of them, ready to print.
 
     >>> facts({"worst": 1e-15, "by grid": {"64": 0.1, "128": 0.05}, "series": [1, 2, 3]})
     [('worst', '1e-15'), ('by grid', '64: 0.1, 128: 0.05')]
@@ -158,7 +158,7 @@ def again(evidence: Evidence) -> str:
 
 
 def rerun(case: Case, evidence: Evidence) -> str:
-    """The command that runs this case alone, with the solver that it was run with."""
+    """Return the command that runs this case alone, with the solver that it was run with."""
     if evidence.solver is not None and case["origin"] is None:
         return rerun_with(evidence.run["provenance"]["command"], case["id"])
     tier = " --tier full" if case["tier"] == "full" else ""

@@ -30,7 +30,7 @@ roughness of both bodies. Claims quote the paper, where p_max is f_max. ± is a 
 
 
 def page(documents: Mapping[str, Any]) -> str:
-    """The page as Markdown, of all result files by name without suffix."""
+    """Return the page as Markdown, of all result files by name without suffix."""
     evidence = gathered(documents[RUN], {name: file for name, file in documents.items() if name != RUN})
     sections = (
         table_3(documents["reproduction"]),

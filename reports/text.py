@@ -44,7 +44,7 @@ def symbols(text: str) -> str:
 
 
 def number(value: float | None, digits: int = 4) -> str:
-    """A number for a table; what was not measured is "n/a", never 0.
+    """Return a number for a table; what was not measured is "n/a", never 0.
 
     >>> number(None), number(0.25), number(171.0512, 6)
     ('n/a', '0.25', '171.051')
@@ -53,7 +53,7 @@ def number(value: float | None, digits: int = 4) -> str:
 
 
 def interval(value: float, half_width: float) -> str:
-    """The value with the decimals of its interval's two digits; four digits where there is none.
+    """Return the value with the decimals of its interval's two digits; four digits where there is none.
 
     >>> interval(0.10729513, 0.00042692), interval(12.345, 3.0), interval(0.21550513, 0.0)
     ('0.10730 ± 0.00043', '12.3 ± 3.0', '0.2155')
@@ -65,7 +65,7 @@ def interval(value: float, half_width: float) -> str:
 
 
 def decimals(uncertainty: float) -> int:
-    """Decimals of an uncertainty's first two digits, by which numbers beside it are rounded.
+    """Return the decimals of an uncertainty's first two digits, by which numbers beside it are rounded.
 
     >>> decimals(0.137), decimals(25.4)
     (2, 0)
@@ -83,7 +83,7 @@ def unit_of(case: Case) -> tuple[str, float]:
 
 
 def percent(share: float) -> str:
-    """A share in per cent, to whole ones.
+    """Return a share in per cent, to whole ones.
 
     >>> percent(0.9776)
     '98 %'
@@ -92,7 +92,7 @@ def percent(share: float) -> str:
 
 
 def judgement(case: Case) -> str:
-    """Error against tolerance, as the status was found."""
+    """Return the error against tolerance, as the status was found."""
     if case["error"] is None:
         return "not judged"
     if case["error"] == 0 == case["tolerance"]:
@@ -103,7 +103,7 @@ def judgement(case: Case) -> str:
 
 
 def cell(value: object) -> str:
-    """A table's cell: numbers to four digits, whole numbers and texts as they are.
+    """Return a table's cell: numbers to four digits, whole numbers and texts as they are.
 
     >>> cell(0.123456), cell(512), cell(True), cell(None)
     ('0.1235', '512', 'yes', 'n/a')

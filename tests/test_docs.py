@@ -14,7 +14,11 @@ from tests.documents import ROOT, agree, blocks, commands, run
 DOCS = sorted((ROOT / "docs").glob("*.md"))
 
 
-LONG = {"notebooks", "read-the-report"}  # a whole notebook, and the report of all committed results
+LONG = {
+    "notebooks", "read-the-report", "friction-with-an-error-bar", "reference-data", "measured-surfaces",
+    "yield",
+}  # fmt: skip
+"""Pages of 5 seconds and more, but for check-your-solver, whose program in C no other test of CI runs."""
 
 
 @pytest.mark.parametrize(

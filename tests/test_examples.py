@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import runpy
 import subprocess
 import sys
@@ -17,7 +18,18 @@ from verification.output import result_files
 
 EXAMPLES = {
     "first_result": (["64"], "mu = 0.1195 +- 0.0024, A = ... mm^2, p_max = 0.800 GPa (converged)"),
-    "hertz": (["32"], "converged: peak 165.79 MPa, -2.9e-03 of Hertz' 166.27"),
+    "first_scene": (["64"], "mu = ... +- ..., ... patches (converged)"),
+    "measured_map": (["100"], "mu = ... +- ..., converged"),
+    "fitted_friction": (["64"], "tau = 15.3 MPa (... to ...)\nbeta = 0.078 (... to ...)"),
+    "capped_contact": (
+        ["64"],
+        "capped at 0.8 GPa: mu = 0.09... p_max = 0.80 GPa (converged)\nelastic: ... (converged)",
+    ),
+    "two_roughnesses": (
+        ["64"],
+        "Gaussian, lay of 30 degrees: rms 0.53 um\nself-affine, Hurst exponent 0.8: rms 0.46 um",
+    ),
+    "cost_of_an_accuracy": (["32,48"], "table1-smooth: 0.29, 0.17 % of mu\n..."),
     "rough_friction": (["0.05"], "converged on 64 x 64\nmu = 0.1366 +- 0.0015\nA  = 0.2313 +- ... mm^2"),
     "check_my_solver": (["solver/pins"], "pass solver/pins ... of 2.0e+00"),
     "which_way_up": (
@@ -60,7 +72,21 @@ def test_no_example_is_left_out() -> None:
     assert [name for name, size in sizes.items() if not 5_000 < size <= 120_000] == []
 
 
-IN_CI = ("hertz", "first_result", "conventions")
+PHONE = 388
+"""Pixels of a picture's width in a window of 420."""
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_letters_of_a_picture_have_9_pixels_on_a_phone(name: str) -> None:
+    """The smallest letters have 10 points unless a size is stated; a picture has 100 pixels per inch."""
+    script = (ROOT / f"examples/{name}.py").read_text(encoding="utf-8")
+    smallest = min([10.0, *map(float, re.findall(r"fontsize=([\d.]+)", script))])
+    with Image.open(ROOT / f"docs/{name}.png") as picture:
+        inches = picture.size[0] / 100
+    assert smallest / 72 / inches * PHONE >= 9
+
+
+IN_CI = ("first_result",)
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 
 from tests.documents import ROOT
-from verification.cases.paper.sweeps import finished
+from tests.verification.cli.children import finished
 
 JOBS = ROOT / "examples/jobs"
 PATIENCE = 300.0  # s, on a busy machine; each takes a few on an idle one

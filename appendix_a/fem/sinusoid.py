@@ -43,10 +43,6 @@ def sinusoid(
     offsets: (m,) horizontal distances from the centre in units of a, at most 10^4.
     progress: called after each of the `SOLVES` solves: far offsets take a quarter of a minute and more.
     Raises InputError.
-
-    >>> r = sinusoid(6.5, 100.0, 0.25, 0.3, offsets=[-3.0, 3.0])
-    >>> ((r.wavy - r.flat) / r.flat * 100).round(1).tolist()  # percent: uphill less, downhill more
-    [-2.8, 2.1]
     """
     if not -1.0 < real(nu) <= 0.5:
         raise InputError("nu", nu, "a Poisson ratio, -1 < nu <= 0.5")
@@ -62,7 +58,12 @@ def departures(
     *,
     progress: Callable[[], None] | None = None,
 ) -> Departures:
-    """Return `sinusoid` for every Poisson ratio at once; `levels` are the three meshes, coarse to fine."""
+    """Return `sinusoid` for every Poisson ratio at once; `levels` are the three meshes, coarse to fine.
+
+    >>> r = departures(6.5, 100.0, 0.25, [-3.0, 3.0], levels=(0, 0, 0)).result(nu=0.3)
+    >>> ((r.wavy - r.flat) / r.flat * 100).round(1).tolist()  # percent: uphill less, downhill more
+    [-2.8, 2.1]
+    """
     where = np.atleast_1d(reals("offsets", offsets, OFFSETS))
     _check(slope_deg, wavelength, position, where)
     # fading waves must not touch the outermost offset at half the reach either: it begins at reach / 4 there

@@ -16,11 +16,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from refimpl.grid import Array, Grid
+from refimpl.grid import Array, Grid, Mask
 from refimpl.model.forces import EDGE_SHARE
 
 PRESSURES = np.array([0.0, 0.3, 0.6, 0.8, 1.0, 1.3])  # knots: a face's pressure over that behind it
 GAPS = np.array([0.0, 0.12, 0.24, 0.36, 0.6, 1.0])  # knots: the gap beyond a face over the next one
+_STEEP = 4  # knot of gaps from which they hardly rise: Hertz's rise from at most 0.36 of the next
 KINDS = 2, len(PRESSURES), len(GAPS)  # faces across and along the pressure's gradient, by both ratios
 NO_FACES = (0.0,) * int(np.prod(KINDS))
 
@@ -36,21 +37,46 @@ def edge_faces(pressure: Array, clearance: Array, grid: Grid) -> tuple[float, ..
     >>> round(float(found.sum()), 12), float((found[0] @ GAPS).sum() / found[0].sum())  # gaps go as 1/4
     (1.0, 0.25)
     """
+    total = np.sum([_downwards(*way) for way in _ways(pressure, clearance, grid)], axis=0)
+    return tuple(total.ravel().tolist())
+
+
+def wall_pressure(pressure: Array, clearance: Array, grid: Grid) -> float:
+    """Return the maximum pressure at a wall: of faces towards which it does not fall, beyond which the gap
+    hardly rises. There the continuous pressure is singular, however low the face's own is.
+
+    >>> pressure, gap = np.array([[0.0, 0.0, 3.0, 2.0, 2.0]]), np.array([[4.0, 3.0, 0.0, 0.0, 0.0]])
+    >>> [wall_pressure(pressure, gap**power, Grid((1, 5), (1.0, 5.0))) for power in (1, 3)]
+    [3.0, 0.0]
+    """
+    highest = 0.0
+    for way in _ways(pressure, clearance, grid):
+        _, here, behind, beyond, next_ = _beside(*way)
+        walls = (here >= behind) & (beyond >= GAPS[_STEEP] * next_) & (behind > 0)
+        highest = max(highest, float(here[walls].max(initial=0.0)))
+    return highest
+
+
+def _ways(pressure: Array, clearance: Array, grid: Grid) -> list[tuple[Array, Array]]:
+    """Return the pressure and gap around the contact with a frame of two rows, seen from all four sides."""
     box = grid.window_around(pressure > 0, margin=2).slices
     p, gap = (grid.padded(field[box], 2) for field in (pressure, np.where(pressure > 0, 0.0, clearance)))
-    ways = [(p, gap), (p.T, gap.T), (p[::-1], gap[::-1]), (p.T[::-1], gap.T[::-1])]
-    total = np.sum([_downwards(*way) for way in ways], axis=0)
-    return tuple(total.ravel().tolist())
+    return [(p, gap), (p.T, gap.T), (p[::-1], gap[::-1]), (p.T[::-1], gap.T[::-1])]
+
+
+def _beside(p: Array, gap: Array) -> tuple[Mask, Array, Array, Array, Array]:
+    """Return the faces to the next row, and of each the pressures at and behind it, and both gaps beyond."""
+    inner = slice(2, -2)
+    faces: Mask = (p[2:-2, inner] > 0) & (p[3:-1, inner] == 0)
+    rows = (p, inner), (p, slice(1, -3)), (gap, slice(3, -1)), (gap, slice(4, None))
+    here, behind, beyond, next_ = (field[row, inner][faces] for field, row in rows)
+    return faces, here, behind, beyond, next_
 
 
 def _downwards(p: Array, gap: Array) -> Array:
     """Return the faces to the next row by kind; fields have a frame of two rows."""
     inner = slice(2, -2)
-    faces = (p[2:-2, inner] > 0) & (p[3:-1, inner] == 0)
-    here, behind, beyond, next_ = (
-        field[rows, inner][faces]
-        for field, rows in ((p, inner), (p, slice(1, -3)), (gap, slice(3, -1)), (gap, slice(4, None)))
-    )
+    faces, here, behind, beyond, next_ = _beside(p, gap)
     by_pressure, by_gap = _hats(_ratio(here, behind), PRESSURES), _hats(_ratio(beyond, next_), GAPS)
     along = (p[inner, 3:-1] - p[inner, 1:-3])[faces]
     squared_normal = np.where(behind > 0, _ratio(behind**2, behind**2 + along**2), 0.0)

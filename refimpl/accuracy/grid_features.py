@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from refimpl.accuracy.constants import constant, table
-from refimpl.accuracy.contact_edge import NO_FACES, edge_faces
+from refimpl.accuracy.contact_edge import NO_FACES, edge_faces, wall_pressure
 from refimpl.accuracy.iteration_error import CORRECTED, merged, reported_numbers
 from refimpl.accuracy.peak import NO_PEAK, Peak, deepest, highest, on_crest
 from refimpl.grid import Array, Grid, inner, second_differences
@@ -27,6 +27,7 @@ EXCESS = np.array(
 """Elements by which a counted area exceeds, of each of `GridFeatures.excess_terms`."""
 _LEVELS = 16  # pressures in `highest_areas`
 _TROUGH_ERROR = constant("trough_error")
+_WALL_RIVAL = constant("wall_rival")  # share of the maximum, from which a wall's pressure may exceed it
 
 
 @dataclass(frozen=True)
@@ -186,9 +187,11 @@ class GridFeatures:
 
 
 def pressure_peak(problem: Problem, state: State) -> Peak:
-    """Return the pressure's peak, which is not smooth on a sharp crest of the surfaces."""
-    peak = highest(state.pressure, problem.grid)
-    return replace(peak, smooth=peak.smooth and not on_crest(state.pressure, problem.gap, problem.grid))
+    """Return the pressure's peak: not smooth on a sharp crest, nor where a wall's pressure may exceed it."""
+    pressure, grid = state.pressure, problem.grid
+    peak = highest(pressure, grid)
+    walls = wall_pressure(pressure, state.clearance, grid) >= _WALL_RIVAL * state.max_pressure > 0
+    return replace(peak, smooth=peak.smooth and not walls and not on_crest(pressure, problem.gap, grid))
 
 
 def first_contact(problem: Problem) -> Peak:
@@ -266,7 +269,8 @@ def hidden_gap(problem: Problem, state: State) -> float:
 
 
 def _undecided(pressure: Array, grid: Grid) -> Array:
-    """Pressures of the elements of `undecided_area` and their neighbours along x and y, shape ``(5, n)``."""
+    """Return the pressures of the elements of `undecided_area` and their neighbours along x and y, shape
+    ``(5, n)``."""
     p = grid.padded(pressure[grid.window_around(pressure > 0, margin=1).slices], 1)
     five = p[1:-1, 1:-1], p[2:, 1:-1], p[:-2, 1:-1], p[1:-1, 2:], p[1:-1, :-2]
     amid = np.logical_and.reduce([field > 0 for field in five])
@@ -324,7 +328,7 @@ def slope_sampling_error(pressure: Array, slopes: Slopes, grid: Grid) -> tuple[f
 
 
 def _in_phase(load: Array) -> Array:
-    """Squares of the sums along lines, summed over the lines of each axis and diagonal.
+    """Return the squares of the sums along lines, summed over the lines of each axis and diagonal.
 
     Each counts with the square of its share of what it would be if all of the line's loads were equal.
     """

@@ -26,7 +26,10 @@ _SHEARED = "friction_coefficient", "friction_force"
 Parts = dict[str, float]
 Uncertainty = dict[str, Parts]
 
-_MARGIN = 10  # times the largest residual, within which of zero a pressure or clearance may change its sign
+# times the largest residual, within which of zero a pressure or clearance may change its sign: against solves
+# to 1e-10, elements of 61 of 63 loose solves (residuals of 1e-4 to 0.2) changed within 4.3, and all areas
+# were within their part
+_MARGIN = 10
 
 
 def reported_numbers(problem: Problem, state: State) -> dict[str, float]:
@@ -92,13 +95,13 @@ def iteration_parts(problem: Problem, state: State) -> Uncertainty:
 
 
 def _approach_interval(state: State) -> float:
-    """Half the interval of approaches of a contact without elastic elements (m)."""
+    """Return half the interval of approaches of a contact without elastic elements (m)."""
     lowest = float(np.min(state.v, where=~state.contact, initial=math.inf))
     return lowest - state.approach
 
 
 def _peak_misfit(problem: Problem, state: State) -> float:
-    """Pressure (Pa) that closes the clearance of the highest elements, each by itself.
+    """Return the pressure (Pa) that closes the clearance of the highest elements, each by itself.
 
     Those are elements with half of the maximum pressure; at edges clearances are larger, and no peak is
     there.

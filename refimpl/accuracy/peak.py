@@ -20,8 +20,9 @@ from refimpl.grid import Array, Grid, Mask
 _RIVAL, _CREST_RIVAL = constant("peak_rival"), constant("crest_rival")  # shares of the highest element
 _REACH = 2  # elements on either side of a maximum that fourth differences need
 _FAR = 5  # elements on either side of a maximum that sixth differences beside it need
-# sixth over fourth differences of a kink: 2.5 to 3, wherever it lies between elements; of a wave of number q
-# 4 sin(q h / 2)^2, so that waves of more than 3.5 elements are none
+# largest sixth over fourth differences of a kink at a share t between two elements, whose second differences
+# are (1 - t, t) and zero: 3 at t = 0 and 1/2, least at t = 2/5 and 3/5 with 2.5, and 2 % for curvature beside
+# it; of a wave of number q 4 sin(q h / 2)^2, so that waves of more than 3.5 elements are none
 _KINK_RATIO = 2.45, 3.05
 _LEAST_KINK = constant("least_kink")
 _ERROR_POWER = constant("peak_error_power")
@@ -136,7 +137,7 @@ def on_crest(field: Array, surface: Array, grid: Grid, share: float = _CREST_RIV
 
 
 def _peak(padded: Array, contact: Mask, least: float) -> Peak:
-    """The peak of all maxima of at least ``least``, in a field with a frame of `_REACH` elements.
+    """Return the peak of all maxima of at least ``least``, in a field with a frame of `_REACH` elements.
 
     ``contact`` has that frame too, without contact beyond a free border.
     """
@@ -148,7 +149,8 @@ def _peak(padded: Array, contact: Mask, least: float) -> Peak:
 
 
 def _maxima(padded: Array, frame: int, least: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Places in a field with a frame of elements: at least ``least``, and no lower than those beside."""
+    """Return the places in a field with a frame of elements: at least ``least``, and no lower than those
+    beside."""
     inner, back, ahead = slice(frame, -frame), slice(frame - 1, -frame - 1), slice(frame + 1, 1 - frame)
     field = padded[inner, inner]
     maxima: Mask = field >= least
@@ -159,14 +161,15 @@ def _maxima(padded: Array, frame: int, least: float) -> tuple[NDArray[np.intp], 
 
 
 def _lines(padded: Array, i: NDArray[np.intp], j: NDArray[np.intp], reach: int) -> Array:
-    """Elements to ``reach`` on either side of each place, along x and y: shape ``(2, 2 reach + 1, n)``."""
+    """Return the elements to ``reach`` on either side of each place, along x and y: shape ``(2, 2 reach + 1,
+    n)``."""
     near = np.arange(-reach, reach + 1)[:, None]
     return np.array([padded[i + near, j], padded[i, j + near]])
 
 
 def _parabolas(lines: Array) -> tuple[Array, Array, Array]:
-    """Height, drop and non-parabolicity of each place with ``lines`` (2, 5, n) about it, a maximum along
-    both."""
+    """Return the height, drop and non-parabolicity of each place with ``lines`` (2, 5, n) about it, a maximum
+    along both."""
     farther_back, back, top, ahead, farther = lines.swapaxes(0, 1)
     bends, rise = 2 * top - back - ahead, ahead - back
     gains = np.zeros_like(bends)

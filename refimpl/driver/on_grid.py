@@ -17,6 +17,7 @@ from refimpl.model.state import Status
 from refimpl.operators.fft import Counter
 from refimpl.operators.influence import whole_grid_influence
 from refimpl.planning.plan import Method, Plan
+from refimpl.planning.term_effects import effects_in
 from refimpl.scene.discretise import Discretiser
 from refimpl.solution.cost import Cost, total_cost
 from refimpl.solution.evidence import Evidence
@@ -35,18 +36,31 @@ def solve_on_grid(
     progress: Progress | None,
     guess: InitialGuess | None,
 ) -> Evidence:
-    """Discretise, solve and certify on one grid."""
+    """Discretise, solve and certify on one grid; again with a neglected term that turns out to matter."""
     started = time.perf_counter()
     counter = Counter() if progress is None else _ReportingCounter(plan.grid, progress)
     problem = discretiser.problem(plan.grid, plan.switches)
     state = _solve_problem(problem, plan.method, tolerance, counter, guess)
     cost = Cost(time.perf_counter() - started, counter.tally, counter.point_logs, state.iterations)
     solved = Evidence(discretiser.scene, problem, plan, state, tolerance, cost)
-    hardness = problem.pair.softer_hardness or math.inf
-    if plan.requested.plastic is not None or plan.includes("plastic") or state.max_pressure <= hardness:
+    missing = _missing(solved)
+    if missing is None:
         return solved
-    capped = solve_on_grid(plan.restore(problem, "plastic"), discretiser, tolerance, progress, guess)
-    return replace(capped, cost=total_cost([cost, capped.cost]))
+    again = solve_on_grid(plan.restore(problem, missing), discretiser, tolerance, progress, guess)
+    return replace(again, cost=total_cost([cost, again.cost]))
+
+
+def _missing(solved: Evidence) -> str | None:
+    """Name the cap that pressures reach, or the largest effect of neglected terms that exceed the budget."""
+    plan, problem, state = solved.plan, solved.problem, solved.state
+    hardness = problem.pair.softer_hardness or math.inf
+    if plan.requested.plastic is None and not plan.includes("plastic") and state.max_pressure > hardness:
+        return "plastic"
+    found = effects_in(
+        plan.neglected, problem, state.pressure, state.clearance, plan.contact, plan.decided_on
+    )
+    sizes = {name: effect.larger for name, effect in found.items()}
+    return max(sizes, key=lambda name: sizes[name]) if sum(sizes.values()) > plan.budget else None
 
 
 def _solve_problem(
@@ -65,7 +79,7 @@ def _solve_problem(
 
 
 def _without_contact(problem: Problem) -> State:
-    """The state of surfaces that do not touch at the approach: nothing is loaded."""
+    """Return the state of surfaces that do not touch at the approach: nothing is loaded."""
     zero = np.zeros(problem.gap.shape)
     slopes = problem.slopes(zero, zero)
     operator = whole_grid_influence(problem.grid, problem.direction, Window(0, 1, 0, 1))
@@ -86,5 +100,5 @@ class _ReportingCounter(Counter):
 
 
 def initial_guess(problem: Problem, pressure: Array, clearance: Array, approach: float) -> InitialGuess:
-    """The initial guess for a grid that is not coarser, from a state and its reported approach (m)."""
+    """Return the initial guess for a grid that is not coarser, from a state and its reported approach (m)."""
     return InitialGuess(pressure, clearance + (approach + problem.datum) - problem.gap, None)

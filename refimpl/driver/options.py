@@ -8,6 +8,7 @@ from refimpl.accuracy.refinement import check_accuracy, tolerance_for
 from refimpl.driver.limits import Limits
 from refimpl.errors import InputError, keep_doubles, require_number, require_one_of, size_text
 from refimpl.grid import Grid
+from refimpl.measured.areal_parameters import implausible_slope
 from refimpl.model.friction import is_frictionless
 from refimpl.model.problem import Terms
 from refimpl.planning.plan import DECISION_GRID, METHODS, Method, Plan, make_plan, memory_of
@@ -54,9 +55,10 @@ class Options:
             check_accuracy(self.accuracy)
             check_has_bar(self.target_quantity, self.scene.friction)
         require_number("tolerance", self.residual_tolerance, "a number between 0 and 1", above=0, below=1)
-        if (self.grid is None) == (self.accuracy is None):
-            allowed = "a number of elements along the longer side, or two, or an accuracy, and not both"
-            raise InputError("grid", self.grid, allowed)
+        if self.grid is None and self.accuracy is None:
+            object.__setattr__(self, "grid", self.scene.default_grid)
+        if self.grid is not None and self.accuracy is not None:
+            raise InputError("grid", self.grid, "none beside an accuracy, which chooses the grid")
         for name, value in self.limits.given.items() if self.accuracy is None else ():
             raise InputError(name, value, "none without an accuracy")
         _ = self.solve_grid  # refuses what is no grid
@@ -89,11 +91,24 @@ class Options:
         most = hardness * scene.lengths[0] * scene.lengths[1]
         allowed = (
             f"at most {most:.6g} N, the softer body's hardness, {hardness:.4g} Pa, times the nominal area "
-            "(1 HV is 9.81e6 Pa; or plastic = false)"
+            "(1 HV is 9.81e6 Pa, 1 GPa 1e9 Pa; or plastic = false)"
         )
         if max(scene.lengths) < _SMALL_DOMAIN:
-            allowed += f"; the domain is only {size_text(scene.lengths)} m: units of the map, or its pixel?"
+            size = f"the domain is only {size_text(scene.lengths)} m (units of the map, or its pixel?)"
+            allowed = f"{size}; {allowed}"
+        if scene.load > most:
+            self._refuse_doubtful_maps()
         require_number("load", scene.load, allowed, at_most=most)
+
+    def _refuse_doubtful_maps(self) -> None:
+        """Refuse a map whose slopes say that its unit or pixel is wrong, before its load is."""
+        for name in ("lower", "upper"):
+            for k, part in enumerate(self.scene.parts(name)):
+                known = part.pitch(self.scene.lengths) is not None
+                for doubt in implausible_slope(*part.data_points(self.solve_grid)) if known else ():
+                    said = f"{doubt} (its {size_text(self.scene.lengths)} m do not bear {self.scene.load} N)"
+                    allowed = f"heights of plausible slopes: {said}"
+                    raise InputError(f"{name}.surface[{k}]", part.label, allowed)
 
     def _check_strains(self) -> None:
         """Refuse tau, loads and approaches beyond a strain of 1e6: squares of slopes would overflow."""
@@ -171,5 +186,5 @@ class Options:
 
 
 def _by(grid: Grid) -> str:
-    """Lengths of a grid, one if it is a square."""
+    """Return the lengths of a grid, one if it is a square."""
     return " x ".join(f"{length}" for length in dict.fromkeys(grid.lengths))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -12,9 +13,9 @@ from refimpl.accuracy.refinement import (
     FIRST_GRIDS,
     GRID_SIZES,
     DataShares,
+    Refinement,
     Unfinished,
     longer_side,
-    neglected_matter,
     predicted_size,
     reason_unreachable,
     refine_until,
@@ -27,7 +28,6 @@ from refimpl.driver.options import Options
 from refimpl.grid import Grid
 from refimpl.model.state import Status
 from refimpl.planning.plan import Plan
-from refimpl.planning.term_effects import effects_in
 from refimpl.scene.discretise import Discretiser
 from refimpl.solution.cost import Cost, total_cost
 from refimpl.solution.data_error import data_error, finest_by_data
@@ -39,23 +39,17 @@ _CONVERGED = (Status.CONVERGED, Status.CYCLED)
 
 
 def refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Progress | None) -> Solution:
-    """The finest grid's solution of a refinement, with the uncertainty from all grids and the summed cost.
+    """Return the finest grid's solution of a refinement, with the uncertainty from all grids and the summed
+    cost.
 
     When finer grids do not fit into memory, or exceed the largest size, the finest solved is returned as
     `ACCURACY_NOT_REACHED` with a warning that states the accuracy reached.
     """
-    scene, quantity = options.scene, options.target_quantity
+    quantity = options.target_quantity
     assert options.accuracy is not None
     grids = _Refinement(options, plan, discretiser, progress)
     try:
-        ended = refine_until(
-            grids.features_at,
-            options.accuracy,
-            quantity,
-            slenderness=scene.slenderness,
-            data=grids.data,
-            restored=grids.restored,
-        )
+        ended = grids.until(grids.features_at)
     except KeyboardInterrupt as interrupt:
         if grids.last is not None:
             interrupt.args = (_interrupted(grids.last, total_cost(grids.costs)),)
@@ -72,7 +66,7 @@ def refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Pr
 
 
 def _interrupted(solved: Evidence, cost: Cost) -> Solution:
-    """The last finished grid's solution of a refinement that was interrupted."""
+    """Return the last finished grid's solution of a refinement that was interrupted."""
     line = Notice("interrupted: the finest grid that was finished")
     return assemble(solved, shortfall=line, cost=cost)
 
@@ -93,27 +87,26 @@ class Forecast:
 
 
 def forecast(options: Options, plan: Plan, discretiser: Discretiser) -> Forecast:
-    """Solve the grids that open a refinement, and say by their bars what it would end with."""
+    """Refine as an accuracy would, up to half the elements per side of the last grid; forecast that grid."""
     scene, quantity, accuracy = options.scene, options.target_quantity, options.accuracy
     assert accuracy is not None
     grids = _Refinement(options, plan, discretiser, None)
-    results = [grids.features_at(M * scene.slenderness) for M in FIRST_GRIDS]
-    size, refusal = longer_side(results[-1]), ""
-    if results[-1].touching and relative_bound(results, quantity) > accuracy:
-        value = abs(results[-1].numbers[quantity])
-        stuck = unfalling(results, quantity, grids.data)
-        if neglected_matter(results[-1], quantity, accuracy * value - sum(stuck.values())):
-            results[-1] = grids.restored() or results[-1]
-        refusal = reason_unreachable(stuck, value, accuracy)
-        aim = accuracy if not refusal else AIM * sum(stuck.values()) / value
-        finer = [M * scene.slenderness for M in GRID_SIZES if size < M * scene.slenderness]
-        enough = predicted_size(results, aim, quantity, finer, grids.data)
-        size = enough or max(finer, default=size)
-        if enough is None:
-            refusal = refusal or f"{size} elements a side do not suffice"
+    solved: list[GridFeatures] = []
+
+    def far_from_the_end(M: int) -> GridFeatures:
+        if len(solved) >= len(FIRST_GRIDS) and grids.expected_end(solved)[0] < 2 * M:
+            raise Unfinished("")
+        solved.append(grids.features_at(M))
+        return solved[-1]
+
+    ended = grids.until(far_from_the_end)
+    size, refusal = longer_side(ended.results[-1]), ended.refusal
+    short = relative_bound(ended.results, quantity) <= accuracy if ended.results[-1].touching else True
+    if not short and not refusal:
+        size, refusal = grids.expected_end(ended.results)
     expected = grids.plan.on(scene.refined(size))
     seconds = grids.allowance.expected_seconds(expected.grid)
-    return Forecast(expected.grid, seconds, expected.memory, tuple(r.grid for r in results), refusal)
+    return Forecast(expected.grid, seconds, expected.memory, tuple(r.grid for r in ended.results), refusal)
 
 
 class _Refinement:
@@ -123,6 +116,7 @@ class _Refinement:
         self, options: Options, plan: Plan, discretiser: Discretiser, progress: Progress | None
     ) -> None:
         self.scene, self.plan = options.scene, plan
+        self._accuracy, self._quantity = options.accuracy or 0.0, options.target_quantity
         self.costs: list[Cost] = []
         self.last: Evidence | None = None
         self._discretiser, self._progress = discretiser, progress
@@ -130,11 +124,34 @@ class _Refinement:
         self.data = DataShares(cache(self._data_left), finest_by_data(self.scene))
 
     def _data_left(self, M: int) -> float:
-        """Share of the contact area that the data leave open on M elements along the longer side."""
+        """Return the share of the contact area that the data leave open on M elements along the longer
+        side."""
         return data_error(self.scene, self.scene.refined(M))
 
+    def until(self, features_at: Callable[[int], GridFeatures]) -> Refinement:
+        """Solve grid after grid by ``features_at`` until the accuracy is reached, or no longer to be."""
+        return refine_until(
+            features_at,
+            self._accuracy,
+            self._quantity,
+            slenderness=self.scene.slenderness,
+            data=self.data,
+            restored=self.restored,
+        )
+
+    def expected_end(self, results: Sequence[GridFeatures]) -> tuple[int, str]:
+        """Return the longer side of the last grid, by the bars so far, and why the accuracy may fail."""
+        size, value = longer_side(results[-1]), abs(results[-1].numbers[self._quantity])
+        stuck = unfalling(results, self._quantity, self.data)
+        refusal = reason_unreachable(stuck, value, self._accuracy) if value else ""
+        aim = AIM * sum(stuck.values()) / value if refusal else self._accuracy
+        finer = [M * self.scene.slenderness for M in GRID_SIZES if size < M * self.scene.slenderness]
+        enough = predicted_size(results, aim, self._quantity, finer, self.data)
+        size = enough or max(finer, default=size)
+        return size, refusal or ("" if enough else f"{size} elements a side do not suffice")
+
     def features_at(self, M: int) -> GridFeatures:
-        """Solve on a grid, no coarser than the last; again if neglected terms exceed their budget.
+        """Solve on a grid, no coarser than the last.
 
         Raises `Unfinished` where the solve does not converge and that on a coarser grid did.
         """
@@ -156,16 +173,8 @@ class _Refinement:
         opened = len(self.costs) > len(FIRST_GRIDS)
         if opened and start is not None and solved.status not in _CONVERGED:
             raise Unfinished(f"{plan.grid} elements: {solved.status.value}")
-        self.plan = solved.plan  # with the cap, if it was restored
+        self.plan = solved.plan  # with what was restored
         self.last = solved
-        effects = effects_in(
-            plan.neglected, solved.problem, solved.state.pressure, plan.contact, plan.decided_on
-        )
-        sizes = {name: effect.larger for name, effect in effects.items()}
-        if sum(sizes.values()) > self.plan.budget:
-            largest = max(sizes, key=lambda name: sizes[name])
-            self.plan = self.plan.restore(solved.problem, largest)
-            return self.features_at(M)
         return solved.features
 
     def restored(self) -> GridFeatures | None:

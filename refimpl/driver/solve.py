@@ -37,12 +37,13 @@ def solve(
     max_memory: float | None = None,
     progress: Progress | None = None,
 ) -> Solution:
-    """Solve a scene on a grid of elements, or to a relative ``accuracy``; exactly one of them.
+    """Solve a scene on a grid of elements, or to a relative ``accuracy``.
 
     Parameters
     ----------
     grid : elements along the longer side, the other number chosen for elements nearest to square; or both,
-        ``(Mx, My)``
+        ``(Mx, My)``; by default, without an accuracy, a measured map's own points, up to 512 along the longer
+        side, and 256 of formulas (`Scene.default_grid`)
     method : "fft" the production solver, "dense" the plain reference for small grids, "paper" the
         paper's own scheme
     accuracy : refine until the error bar of ``quantity`` is this share of its value, on grids of one element
@@ -95,7 +96,7 @@ def solve(
 
 
 def _solved(options: Options, progress: Progress | None) -> Solution:
-    """The solution by checked options: on one grid, or on a sequence of them."""
+    """Return the solution by checked options: on one grid, or on a sequence of them."""
     discretiser, start = Discretiser(options.scene, options.approach), options.start
     plan = options.plan(discretiser)
     if options.accuracy is not None:

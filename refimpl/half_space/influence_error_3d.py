@@ -35,7 +35,8 @@ class ElementError:
 
 
 def element_error(slope: float, lower: Material, upper: Material | None = None) -> ElementError:
-    """Errors of flat influence coefficients on a wave of maximum ``slope`` (rad), up to 30 degrees.
+    """Return the errors of flat influence coefficients on a wave of maximum ``slope`` (rad), up to 30
+    degrees.
 
     One body alone when ``upper`` is None; in a pair the first-order parts enter as lower minus upper.
     Raises `InputError` for a slope beyond the table and for a negative Poisson's ratio.
@@ -61,12 +62,12 @@ def element_error(slope: float, lower: Material, upper: Material | None = None) 
 
 
 def steepest_tabulated() -> float:
-    """The table's largest slope (rad)."""
+    """Return the table's largest slope (rad)."""
     return math.radians(float(_table()[0][-1]))
 
 
 def _errors(slope: float, nu: float) -> Array:
-    """Errors (positions, 10): linear over the slope's tangent, quadratic in nu.
+    """Return the errors (positions, 10): linear over the slope's tangent, quadratic in nu.
 
     What is interpolated is the error over the tangent, and times ``1 - nu^2``, as a displacement is: its
     first-order part, ``(1 + nu)(1 - 2 nu)`` times the slope, is met exactly.
@@ -85,6 +86,6 @@ def _errors(slope: float, nu: float) -> Array:
 
 @cache
 def _table() -> tuple[Array, Array, Array]:
-    """Slopes (degrees), Poisson's ratios, and errors [ratio, position, slope, coefficient]."""
+    """Return the slopes (degrees), Poisson's ratios, and errors [ratio, position, slope, coefficient]."""
     table = shipped_table(SPACE)
     return table["slope_deg"], table["nu"], table["error"]

@@ -71,17 +71,48 @@ def _from_file(body: Body, name: str, path: str) -> Body:
     return body.with_parts(parts)
 
 
-def read_rows(path: str | Path) -> tuple[Row, ...]:
-    """Return the rows of a CSV file with the columns ``load,mu,u_mu`` or
-    ``load,friction_force,u_friction_force``.
+Cells = list[tuple[str, list[str]]]
+"""Rows of texts, the header first, each with its name in a refusal."""
+
+
+def read_rows(table: str | Path | Any) -> tuple[Row, ...]:
+    """Return the rows of a CSV file, a pandas DataFrame or a dict of columns.
+
+    Columns are ``load,mu,u_mu`` or ``load,friction_force,u_friction_force``.
 
     SI units; ``u`` is a standard uncertainty (68 %). Optional columns: ``sliding_direction`` (rad),
-    ``sliding_offset`` (m), ``upper_file`` and ``lower_file`` (relative to the table). Semicolons or tabs may
-    separate the columns; decimal commas are read then, unless all of them may separate thousands. Lines that
-    begin with "#" are comments. An unnamed first column that counts the rows, as R and pandas write it, is
-    dropped with a warning. Raises `InputError`, which names the line, for anything else.
+    ``sliding_offset`` (m), ``upper_file`` and ``lower_file`` (relative to the CSV file, or
+    to the working directory). In a file, semicolons or tabs may separate the columns; decimal commas are read
+    then, unless all of them may separate thousands. Lines that begin with "#" are comments. An unnamed first
+    column that counts the rows, as R and pandas write it, is dropped with a warning. Raises `InputError`,
+    which names the line, for anything else.
+
+    >>> measured = {"load": [5, 80], "friction_force": [1, 12], "u_friction_force": [0.1, 1]}
+    >>> read_rows(measured)  # or pandas.DataFrame(measured)
+    (Row(load=5.0, mu=0.2, u_mu=0.02, ...), Row(load=80.0, mu=0.15, u_mu=0.0125, ...))
     """
-    path = Path(path)
+    is_file = isinstance(table, str | Path)
+    cells, decimal = _of_file(Path(table)) if is_file else (_of_frame(table), ".")
+    folder = Path(table).parent if is_file else Path()
+    header = cells[0][1]
+    quantity = _check_header(header)
+    rows = tuple(_row(header, quantity, name, line, folder, decimal) for name, line in cells[1:])
+    return check_rows(rows)
+
+
+def _of_frame(table: Any) -> Cells:
+    """Return the cells of a data frame; missing ones are empty."""
+    try:
+        names = list(getattr(table, "columns", table))
+        columns = [["" if cell is None or cell != cell else str(cell) for cell in table[k]] for k in names]
+    except (TypeError, KeyError, IndexError) as alien:
+        raise InputError("data", type(table).__name__, "a CSV file's path, or a data frame") from alien
+    rows = zip(*columns, strict=True)
+    return [("header", list(map(str, names))), *((f"row {k}", list(row)) for k, row in enumerate(rows, 1))]
+
+
+def _of_file(path: Path) -> tuple[Cells, str]:
+    """Return the cells of a CSV file, and its decimal mark."""
     require_regular("data", path, MAX_BYTES)
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -90,56 +121,50 @@ def read_rows(path: str | Path) -> tuple[Row, ...]:
     except UnicodeDecodeError as alien:
         raise InputError("data", str(path), "a CSV file in UTF-8") from alien
     lines = [
-        (k, line)
+        (f"line {k}", line)
         for k, line in enumerate(text.splitlines(), 1)
         if line.strip() and not line.lstrip().startswith("#")
     ]
-    if len(lines) > MAX_ROWS + 1:
-        raise InputError("data", f"{len(lines) - 1} rows", f"at most {MAX_ROWS}")
     separator = next((mark for mark in ";\t" if lines and mark in lines[0][1]), ",")
     try:
-        read = ((k, next(csv.reader([line], delimiter=separator, strict=True))) for k, line in lines)
-        cells = [(k, [cell.strip() for cell in row]) for k, row in read]
+        read = ((name, next(csv.reader([line], delimiter=separator, strict=True))) for name, line in lines)
+        cells = [(name, [cell.strip() for cell in row]) for name, row in read]
     except csv.Error as alien:
         raise InputError("data", str(path), f"a CSV file ({alien})") from alien
     if not cells:
         raise InputError("data", str(path), "a header line and rows: the file is empty")
     cells = _without_index(cells)
-    header = cells[0][1]
-    quantity = _check_header(header)
-    decimal = "." if separator == "," else ","
     _refuse_thousands(cells[1:])
-    rows = tuple(_row(header, quantity, k, line, path.parent, decimal) for k, line in cells[1:])
-    return check_rows(rows)
+    return cells, "." if separator == "," else ","
 
 
-def _without_index(cells: list[tuple[int, list[str]]]) -> list[tuple[int, list[str]]]:
-    """Lines without an unnamed first column of whole numbers from 0 or 1 on."""
+def _without_index(cells: Cells) -> Cells:
+    """Return the lines without an unnamed first column of whole numbers from 0 or 1 on."""
     header, counts = cells[0][1], [row[0] for _, row in cells[1:]]
     if header[0] or counts not in ([str(k + first) for k in range(len(counts))] for first in (0, 1)):
         return cells
     said = "data: the unnamed first column, which counts the rows, was dropped"
-    warnings.warn(said, UserWarning, stacklevel=3)
-    return [(k, row[1:]) for k, row in cells]
+    warnings.warn(said, UserWarning, stacklevel=4)
+    return [(name, row[1:]) for name, row in cells]
 
 
-def _refuse_thousands(cells: Sequence[tuple[int, Sequence[str]]]) -> None:
+def _refuse_thousands(cells: Cells) -> None:
     """Raise `InputError` for 1,320 where no comma of the table is surely a decimal one, as of 1,32 or 0,320.
 
     The same holds for points, but where the table has no comma they are decimal ones.
     """
-    numbers = [(k, cell) for k, row in cells for cell in row if _MARKED.fullmatch(cell)]
-    commas = [(k, cell) for k, cell in numbers if "," in cell]
-    points = [(k, cell) for k, cell in numbers if "." in cell]
+    numbers = [(name, cell) for name, row in cells for cell in row if _MARKED.fullmatch(cell)]
+    commas = [(name, cell) for name, cell in numbers if "," in cell]
+    points = [(name, cell) for name, cell in numbers if "." in cell]
     for found in (commas, points if commas else []):
         if found and all(_THOUSANDS.fullmatch(cell) for _, cell in found):
-            k, cell = found[0]
+            name, cell = found[0]
             allowed = "a decimal point, and no mark between thousands: this one may be either"
-            raise InputError(f"data line {k}", cell, allowed)
+            raise InputError(f"data {name}", cell, allowed)
 
 
 def _check_header(header: Sequence[str]) -> str:
-    """The quantity measured, "mu" or "friction_force"."""
+    """Return the quantity measured, "mu" or "friction_force"."""
     shown = ",".join(header)
     known = {"load", *_FRICTION, *_FRICTION.values(), *_FRAME, *_FILES}
     if unknown := [name for name in header if name not in known]:
@@ -157,38 +182,38 @@ def _check_header(header: Sequence[str]) -> str:
 
 
 def _row(
-    header: Sequence[str], quantity: str, k: int, cells: Sequence[str], folder: Path, decimal: str
+    header: Sequence[str], quantity: str, where: str, cells: Sequence[str], folder: Path, decimal: str
 ) -> Row:
     if len(cells) != len(header):
         allowed = f"{len(header)} cells, as many as columns"
         if decimal == "." and len(cells) > len(header):
             allowed += " (decimal commas need ; between the columns)"
-        raise InputError(f"data line {k}", ",".join(cells), allowed)
+        raise InputError(f"data {where}", ",".join(cells), allowed)
     found = dict(zip(header, cells, strict=True))
     numbers = {
-        name: _number(k, name, text.replace(decimal, "."))
+        name: _number(where, name, text.replace(decimal, "."))
         for name, text in found.items()
         if name not in _FILES and (text or name not in _FRAME)
     }
     load, value, spread = (numbers[name] for name in ("load", quantity, _FRICTION[quantity]))
     for name, number in (("load", load), (_FRICTION[quantity], spread)):
-        require_size(f"data line {k}: {name}", number, "a positive number")
+        require_size(f"data {where}: {name}", number, "a positive number")
     allowed = f"a number that is not negative, at most {MOST}"
-    require_number(f"data line {k}: {quantity}", value, allowed, at_least=0, at_most=MOST)
+    require_number(f"data {where}: {quantity}", value, allowed, at_least=0, at_most=MOST)
     scale = 1.0 if quantity == "mu" else load
     files = {name: str(folder / text) for name in _FILES if (text := found.get(name))}
     frame = {name: numbers[name] for name in _FRAME if name in numbers}
     return Row(load, value / scale, spread / scale, **frame, **files)  # type: ignore[arg-type]  # names of fields
 
 
-def _number(k: int, name: str, text: str) -> float:
+def _number(where: str, name: str, text: str) -> float:
     unit = f" in {_UNITS[name]}, without its unit" if name in _UNITS else ""
     try:
         number = float(text)
     except ValueError:
         number = math.nan
     if not math.isfinite(number) or "_" in text or not text.isascii():
-        raise InputError(f"data line {k}: {name}", text, f"a finite number{unit}")
+        raise InputError(f"data {where}: {name}", text, f"a finite number{unit}")
     return number
 
 
@@ -204,7 +229,8 @@ def _refuse_mixed_loads(rows: Sequence[Row]) -> None:
 
 
 def _refuse_swapped(rows: Sequence[Row]) -> None:
-    """No friction law with tau and beta has friction that falls with the load, or mu that rises with it."""
+    """Refuse friction that falls with the load, and mu that rises with it: no law with tau and beta has
+    them."""
     known = [row for row in rows if row.mu > 3 * row.u_mu]
     if not known:
         return
@@ -223,6 +249,10 @@ def check_rows(rows: Sequence[Row], unknowns: int = 2) -> tuple[Row, ...]:
     As many loads, or scenes, as unknowns are required. Rows whose mu or whose loads lie so far apart that N
     and kN are mixed are refused, and so are all beyond any friction, or all less than their uncertainty.
     """
+    known = all(isinstance(row, Row) for row in rows)
+    if not known or len(rows) > MAX_ROWS:
+        found = f"{len(rows)} rows" if known else type(rows).__name__
+        raise InputError("data", found, f"at most {MAX_ROWS} rows as of read_rows(table)")
     cases = {replace(row, mu=0.0, u_mu=0.0) for row in rows}
     if len(cases) < unknowns:
         count = "two" if unknowns == 2 else f"{unknowns}"
@@ -233,13 +263,13 @@ def check_rows(rows: Sequence[Row], unknowns: int = 2) -> tuple[Row, ...]:
     if mus and mus[-1] > MIXED_FRICTION * mus[0]:
         allowed = "forces in N alone (N and kN mixed?), mu as a number under mu (per cent?)"
         raise InputError("data: mu", f"{mus[0]:.3g} to {mus[-1]:.3g}", allowed)
+    _refuse_swapped(rows)
     if mus and median(mus) > MOST_FRICTION:
         raise InputError(
             "data: mu",
             f"{mus[0]:.3g} to {mus[-1]:.3g}",
             "friction and load in N (mN, kN mixed?), mu as a number (per cent?)",
         )
-    _refuse_swapped(rows)
     if all(row.u_mu > row.mu for row in rows):
         least = min(row.u_mu for row in rows)
         allowed = "uncertainties below mu itself (in per cent? columns swapped?)"

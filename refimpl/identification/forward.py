@@ -76,7 +76,7 @@ class Forward:
 
     def __init__(
         self,
-        grid: int | tuple[int, int],
+        grid: int | tuple[int, int] | None,
         memory: Memory | None = None,
         key: Key | None = None,
         report: Callable[[str], None] | None = None,
@@ -119,7 +119,8 @@ def response_from_dict(stored: Mapping[str, Any]) -> Response:
 
 
 def least_parameters(scene: Scene) -> tuple[float, float]:
-    """Least parameters that are solved for (Pa, 1): too small to matter, large enough to differentiate."""
+    """Return the least parameters that are solved for (Pa, 1): too small to matter, large enough to
+    differentiate."""
     return _FLOOR * 1e-4 * scene.materials.reduced_modulus, _FLOOR * 1e-2
 
 
@@ -163,7 +164,8 @@ def _response(
 
 
 def _log_slope(scene: Scene, solution: Solution, name: str) -> float:
-    """``d mu / d ln p`` by two solves: areas, and with them friction, are counted (`grid_sensitivity`)."""
+    """Return ``d mu / d ln p`` by two solves: areas, and with them friction, are counted
+    (`grid_sensitivity`)."""
     value = parameters(scene)[name]
     return value * difference_quotients(scene, solution, name, value)[0]["friction_coefficient_corrected"]
 
@@ -171,7 +173,7 @@ def _log_slope(scene: Scene, solution: Solution, name: str) -> float:
 def _inputs(
     scene: Scene, solution: Solution, tolerances: Mapping[str, float]
 ) -> tuple[dict[str, float], int]:
-    """Changes of mu at the tolerances (95 %), and the solves that they take."""
+    """Return the changes of mu at the tolerances (95 %), and the solves that they take."""
     if not tolerances:
         return {}, 0
     found = grid_sensitivity(scene, solution, tuple(tolerances))
@@ -184,7 +186,7 @@ def _inputs(
 
 
 def _condensed(solution: Solution, load: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Mean pressures of groups of elements, ordered by pressure, and the groups' weights."""
+    """Return the mean pressures of groups of elements, ordered by pressure, and the groups' weights."""
     active = solution.contact & ~solution.details.excluded
     slopes = solution.slopes
     along = (slopes.cos_x * slopes.cos_y + solution.grid.zeros)[active] * solution.grid.element_area / load

@@ -15,6 +15,7 @@ from refimpl.identification.forward import COVERAGE, Response
 from refimpl.identification.laws import DECISIVE
 from refimpl.identification.profile import BOUNDED
 from refimpl.identification.result import WIDE, Identification
+from refimpl.solution.model_warning import Limit
 
 _SETTLED = 0.5  # standard uncertainties by which the last solves may differ from their prediction
 _LEAST, _FULL = 0.005, 0.99  # A/A0 at every load; a ball's contact of 0.005 is 0.08 of the side wide
@@ -36,7 +37,8 @@ def notes(result: Identification) -> tuple[str, ...]:
 
 
 def _scale(responses: Sequence[Response]) -> Iterator[str]:
-    """Loads out of the scene's scale. Friction alone shows no unit: A/P of a ball is a power of P."""
+    """Yield warnings of loads out of the scene's scale. Friction alone shows no unit: A/P of a ball is a
+    power of P."""
     most = max(response.contact_fraction for response in responses)
     if most < _LEAST:
         yield (
@@ -121,6 +123,10 @@ def _law(result: Identification) -> Iterator[str]:
 
 
 def _limits(responses: Sequence[Response]) -> list[str]:
-    """Warnings of the solves, one of each kind: texts that differ in their numbers alone are one."""
+    """Return the warnings of the solves, one of each kind: texts that differ in their numbers alone are one.
+
+    Where contact of one row is at the hardness, the plasticity index of the others says nothing new.
+    """
     kinds = {re.sub(r"[\d.]+", "", text): text for response in responses for text in response.warnings}
-    return list(kinds.values())
+    plastic = any(response.plastic for response in responses)
+    return [text for text in kinds.values() if not (plastic and text.startswith(Limit.PLASTICITY))]

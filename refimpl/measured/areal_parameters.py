@@ -25,7 +25,7 @@ DIRECTIONS = 180  # directions of the half-circle in which the autocorrelation i
 
 
 def height_parameters(z: Array) -> dict[str, float]:
-    """Sq, Sa, Sp, Sv, Sz (m), Ssk, Sku about the mean height."""
+    """Return Sq, Sa, Sp, Sv, Sz (m), Ssk, Sku about the mean height."""
     d = z[np.isfinite(z)] - np.nanmean(z)
     sq = rms_height(d)
     third, fourth = (skewness(d), kurtosis(d)) if sq > 0 else (math.nan, math.nan)
@@ -35,7 +35,8 @@ def height_parameters(z: Array) -> dict[str, float]:
 
 
 def developed_area(z: Array, pixel: Pixel) -> float:
-    """Sdr: surface over its projection, less one; the mean of both ways to cut a cell into triangles."""
+    """Return Sdr: surface over its projection, less one; the mean of both ways to cut a cell into
+    triangles."""
     along, across = np.diff(z, axis=0) / pixel[0], np.diff(z, axis=1) / pixel[1]
     ends = slice(1, None), slice(None, -1)
     corners = [np.hypot(along[:, j], across[i]) for i in ends for j in ends]
@@ -44,13 +45,14 @@ def developed_area(z: Array, pixel: Pixel) -> float:
 
 
 def mean_square_slopes(z: Array, pixel: Pixel) -> Pixel:
-    """Mean squares of dz/dx and dz/dy, by differences of neighbours."""
+    """Return the mean squares of dz/dx and dz/dy, by differences of neighbours."""
     x, y = (_mean_square(np.diff(z, axis=k) / pixel[k]) for k in (0, 1))
     return x, y
 
 
 def implausible_slope(z: Array, pixel: Pixel) -> tuple[str, ...]:
-    """A note on an rms slope that a wrong unit of heights or pixel would make, of a map that is not flat."""
+    """Return a note on an rms slope that a wrong unit of heights or pixel would make, of a map that is not
+    flat."""
     slope = math.sqrt(sum(mean_square_slopes(z, pixel)))
     if slope == 0 or not math.isfinite(slope) or SLOPES[0] <= slope <= SLOPES[1]:
         return ()
@@ -61,21 +63,21 @@ def implausible_slope(z: Array, pixel: Pixel) -> tuple[str, ...]:
 
 
 def nayak(z: Array, pixel: Pixel) -> float:
-    """Nayak's ``m0 m4 / m2^2`` of profiles along x and y, averaged; second differences for m4."""
+    """Return Nayak's ``m0 m4 / m2^2`` of profiles along x and y, averaged; second differences for m4."""
     m2 = sum(mean_square_slopes(z, pixel)) / 2.0
     m4 = sum(_mean_square(np.diff(z, 2, axis=k) / pixel[k] ** 2) for k in (0, 1)) / 2.0
     return float(np.nanvar(z)) * m4 / m2**2 if m2 > 0 else math.nan
 
 
 def squared(transform: NDArray[np.complex128]) -> Array:
-    """Squares of the magnitudes; ``abs`` would take roots and another array."""
+    """Return the squares of the magnitudes; ``abs`` would take roots and another array."""
     power = transform.real**2
     power += transform.imag**2
     return power
 
 
 def _mean_square(values: Array) -> float:
-    """NaN where nothing was measured: a map may have no two neighbours."""
+    """Return NaN where nothing was measured: a map may have no two neighbours."""
     known = values[np.isfinite(values)]
     return float(np.mean(known**2)) if known.size else math.nan
 
@@ -93,7 +95,7 @@ class Autocorrelation:
 
     @classmethod
     def of(cls, z: Array, pixel: Pixel) -> Autocorrelation:
-        """From all pairs of measured points (nothing wraps)."""
+        """Compute from all pairs of measured points (nothing wraps)."""
         known = np.isfinite(z)
         d = np.where(known, z - np.nanmean(z), 0.0)
         reach = tuple(n // 2 for n in z.shape)
@@ -115,7 +117,8 @@ class Autocorrelation:
         return x, y
 
     def distances(self, level: float) -> Array:
-        """Distance (m) at which the autocorrelation first falls to ``level``, in each of DIRECTIONS.
+        """Return the distance (m) at which the autocorrelation first falls to ``level``, in each of
+        DIRECTIONS.
 
         Direction k is at k pi / DIRECTIONS to x. NaN where it does not fall so far within the lags.
         """
@@ -138,7 +141,8 @@ class Autocorrelation:
         return np.where(below.any(axis=1) & known, found, np.nan)
 
     def ellipse(self, above: float = 0.4) -> tuple[float, float, float]:
-        """Half-axes (m) at which ``exp(-r^2)`` falls to 1/e, and the angle (rad) of the longer one to x.
+        """Return the half-axes (m) at which ``exp(-r^2)`` falls to 1/e, and the angle (rad) of the longer one
+        to x.
 
         ``-ln`` of the autocorrelation is fitted by a quadratic form at the lags around zero at which the
         autocorrelation exceeds ``above``, with its square as weights.
@@ -165,7 +169,7 @@ class Autocorrelation:
         return long, short, angle
 
     def lay(self) -> tuple[float, float, float]:
-        """The `ellipse`; a circle where its ratio is below ISOTROPIC or chance."""
+        """Return the `ellipse`; a circle where its ratio is below ISOTROPIC or chance."""
         long, short, angle = self.ellipse()
         mean = math.sqrt(long * short)
         area = math.prod((n - 1) * edge for n, edge in zip(self.values.shape, self.pixel, strict=True))

@@ -19,14 +19,15 @@ NAMES_SHOWN, NAME_SHOWN = 20, 40  # channels in a message, and characters of eac
 
 
 def choose(path: Path, form: str, reader: Any, given: Overrides) -> tuple[int, Any]:
-    """The channel of the given name or number, by default the first map of heights from the library's own.
+    """Return the channel of the given name or number, by default the first map of heights from the library's
+    own.
 
     Of several arrays it is the only one that is named as heights are. Raises InputError with all there are.
     """
     channels = list(reader.channels)
     names = [str(c.name) for c in channels]
     maps = [] if given.channel is not None else _maps(channels, reader, form in ARRAYS)
-    if given.channel is None and not maps:
+    if given.channel is None and not maps and len(names) != 1:
         raise InputError("path", str(path), f"a map of heights (found: {_listed(names) or 'no channel'})")
     sure = maps and (form not in ARRAYS or len(maps) == 1)
     index = maps[0] if sure else chosen(path, names, given.channel)
@@ -42,7 +43,8 @@ def choose(path: Path, form: str, reader: Any, given: Overrides) -> tuple[int, A
 
 
 def chosen(path: Path, names: list[str], channel: str | int | None) -> int:
-    """Index of the channel of a name or number; None: the only one. Raises InputError with all there are."""
+    """Return the index of the channel of a name or number; None: the only one. Raises InputError with all
+    there are."""
     if channel is None and len(names) != 1:
         raise InputError("channel", None, f"the one that is heights in {path.name}: {_listed(names)}")
     if isinstance(channel, str):
@@ -55,14 +57,15 @@ def chosen(path: Path, names: list[str], channel: str | int | None) -> int:
 
 
 def _listed(names: list[str]) -> str:
-    """Numbers and names, as many and as much of each as a line of a message holds."""
+    """Return the numbers and names, as many and as much of each as a line of a message holds."""
     shown = [f"{k} {name[:NAME_SHOWN]!r}" for k, name in enumerate(names[:NAMES_SHOWN])]
     more = len(names) - len(shown)
     return ", ".join([*shown, f"and {more} more"] if more else shown)
 
 
 def _maps(channels: list[Any], reader: Any, arrays: bool) -> list[int]:
-    """Maps of heights, from the library's own on; of several arrays those that are named as heights are."""
+    """Return the maps of heights, from the library's own on; of several arrays those that are named as
+    heights are."""
     default = reader._default_channel_index
     order = [default, *range(len(channels))] if default < len(channels) else range(len(channels))
     maps = [k for k in dict.fromkeys(order) if _is_height(channels[k])]
@@ -86,20 +89,21 @@ def _is_height(channel: Any) -> bool:
 
 
 def taken(reader: Any, channel: Any) -> tuple[str, ...]:
-    """A note on the channel that was read where there are others."""
+    """Return a note on the channel that was read where there are others."""
     others = ", ".join(repr(str(c.name)) for c in reader.channels if c.name != channel.name)
     return (f"channel {str(channel.name)!r} was read; there are also {others}",) if others else ()
 
 
 def topography(reader: Any, index: int) -> Any:
-    """The library's map of a channel, of pixels of size 1 where the file states none."""
+    """Return the library's map of a channel, of pixels of size 1 where the file states none."""
     channel = reader.channels[index]
     given = {} if channel.physical_sizes is not None else {"physical_sizes": channel.nb_grid_pts}
     return reader.topography(channel_index=index, **given)
 
 
 def with_coordinates(reader: Any, channel: Any) -> Array | None:
-    """Points x, y, z of an array Z beside X and Y of its shape, a row or a column of it, as of a meshgrid."""
+    """Return the points x, y, z of an array Z beside X and Y of its shape, a row or a column of it, as of a
+    meshgrid."""
     indices = {str(c.name).casefold(): k for k, c in enumerate(reader.channels)}
     if str(channel.name).casefold() != "z" or not {"x", "y"} <= set(indices):
         return None

@@ -56,7 +56,7 @@ class Crop:
         return self.centre or (self.reading.area[0] / 2.0, self.reading.area[1] / 2.0)
 
     def positions(self, along: Array, axis: int) -> Array:
-        """Pixel positions of points ``along`` an axis (m from the window's edge)."""
+        """Return the pixel positions of points ``along`` an axis (m from the window's edge)."""
         corner = self._middle[axis] - self.lengths[axis] / 2.0 + self.offset[axis]
         return np.asarray((corner + along) / self.reading.pixel[axis] - 0.5)
 
@@ -78,8 +78,8 @@ class Crop:
         return self.reading.heights[self.points].size
 
     def filled(self, form: Form) -> tuple[Array, tuple[slice, slice]]:
-        """The window's points and what a spline remembers around them, less ``form`` (over pixel positions),
-        gaps filled; and where these begin."""
+        """Return the window's points and what a spline remembers around them, less ``form`` (over pixel
+        positions), gaps filled; and where these begin."""
         i, j = (slice(max(s.start - MEMORY, 0), s.stop + MEMORY) for s in self.points)
         heights = self.reading.heights[i, j]
         x, y = (s.start + np.arange(n, dtype=float) for s, n in zip((i, j), heights.shape, strict=True))

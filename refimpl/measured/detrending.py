@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 import scipy
@@ -21,24 +20,9 @@ MAX_DEGREE = 10
 _FITTED = 250_000  # points of a curved form: more are thinned out evenly
 
 
-class Form(Protocol):
-    """A smooth surface over positions in pixels, to be subtracted anywhere."""
-
-    def __call__(self, x: Array, y: Array) -> Array:
-        """Heights at all pairs of ``x``, ``y``, shape ``(len(x), len(y))``."""
-
-    @property
-    def slopes(self) -> tuple[float, float]:
-        """dz/dx, dz/dy at the centre, per pixel."""
-
-    @property
-    def radius(self) -> float | None:
-        """Radius of curvature (m), negative for a hollow; None for a polynomial."""
-
-
 @dataclass(frozen=True)
 class Polynomial:
-    """A polynomial in x, y of total degree <= ``degree``; ``coefficients[a, b]`` belongs to X^a Y^b,
+    """A polynomial in x, y (pixels) of total degree <= ``degree``; ``coefficients[a, b]`` belongs to X^a Y^b,
     X = (x - x0) / s_x, Y = (y - y0) / s_y."""
 
     coefficients: Array
@@ -47,11 +31,13 @@ class Polynomial:
     radius: float | None = None
 
     def __call__(self, x: Array, y: Array) -> Array:
+        """Return the heights at all pairs of ``x``, ``y``, shape ``(len(x), len(y))``."""
         X, Y = (self._powers(at, axis) for axis, at in enumerate((x, y)))
         return np.asarray(X @ self.coefficients @ Y.T)
 
     @property
     def slopes(self) -> tuple[float, float]:
+        """dz/dx, dz/dy at the centre, per pixel."""
         c = self.coefficients
         return (c[1, 0] / self.scale[0], c[0, 1] / self.scale[1]) if len(c) > 1 else (0.0, 0.0)
 
@@ -82,7 +68,7 @@ class Curved:
         return np.asarray(z0 + along * s + _cap(across * t, t**2, across, curvature))
 
     def _turned(self, x: Array, y: Array) -> tuple[Array, Array]:
-        """Distances (m) along and across the axis."""
+        """Return the distances (m) along and across the axis."""
         x, y = x * self.pixel[0], y * self.pixel[1]
         cos, sin = math.cos(self.axis or 0.0), math.sin(self.axis or 0.0)
         return cos * x + sin * y, cos * y - sin * x
@@ -95,11 +81,15 @@ class Curved:
 
     @property
     def radius(self) -> float | None:
+        """Radius of curvature (m), negative for a hollow."""
         return -1.0 / self.numbers[3] if self.numbers[3] else None
 
 
+Form = Polynomial | Curved
+
+
 def _cap(tilted: Array, squared: Array, slope: float, curvature: float) -> Array:
-    """Height w of a sphere (circle) of that curvature k through the origin, of that slope there.
+    """Return the height w of a sphere (circle) of that curvature k through the origin, of that slope there.
 
     From ``k (r^2 + w^2) = 2 (w - g.x) / s``, s = sqrt(1 + g^2); the plane g.x where k = 0.
     """
@@ -120,14 +110,15 @@ def check_level(level: object, repeats: bool) -> None:
 
 
 def fit_form(x: Array, y: Array, z: Array, level: str | int, pixel: tuple[float, float] = (1.0, 1.0)) -> Form:
-    """The form called ``level``: a name of DEGREES or CURVED, or a polynomial's total degree."""
+    """Return the form called ``level``: a name of DEGREES or CURVED, or a polynomial's total degree."""
     if isinstance(level, str) and level in CURVED:
         return _fit_curved(x, y, z, level, pixel)
     return fit(x, y, z, DEGREES[level] if isinstance(level, str) else level)
 
 
 def fit(x: Array, y: Array, z: Array, degree: int) -> Polynomial:
-    """The least-squares polynomial of total degree <= ``degree`` of ``z[i, j]`` at ``(x_i, y_j)``; -1: zero.
+    """Return the least-squares polynomial of total degree <= ``degree`` of ``z[i, j]`` at ``(x_i, y_j)``; -1:
+    zero.
 
     With Q_x, Q_y orthonormal polynomials on the points of each axis, the products Q_x^a Q_y^b are orthonormal
     on the rectangle, so the best fit is the projection on those with a + b <= degree; where points are
@@ -156,7 +147,8 @@ def fit(x: Array, y: Array, z: Array, degree: int) -> Polynomial:
 
 
 def _fit_curved(x: Array, y: Array, z: Array, level: str, pixel: tuple[float, float]) -> Curved:
-    """Least squares along z over height, slopes, curvature (and axis), from the paraboloid's values."""
+    """Return the least squares along z over height, slopes, curvature (and axis), from the paraboloid's
+    values."""
     thin = max(1, math.ceil(math.sqrt(z.size / _FITTED)))
     at_x, at_y, part = x[::thin], y[::thin], z[::thin, ::thin]
     start = fit(at_x, at_y, part, 2)

@@ -139,7 +139,7 @@ class Inspection:
         return fit_roughness(self.z, self.pixel, kind, draws)
 
     def curves(self) -> dict[str, Any]:
-        """Spectrum, autocorrelation along x and y, and bearing curve as numbers, SI."""
+        """Return the spectrum, autocorrelation along x and y, and bearing curve as numbers, SI."""
         spectrum, correlation = self.spectrum, self.autocorrelation
         lags, values = correlation.lags, correlation.values
         i, j = (n // 2 for n in values.shape)
@@ -154,7 +154,7 @@ class Inspection:
         }  # fmt: skip
 
     def document(self) -> dict[str, Any]:
-        """All of this as plain numbers and texts, SI."""
+        """Return all of this as plain numbers and texts, SI."""
         reading = self.surface.reading
         return {
             "file": reading.name,
@@ -176,14 +176,14 @@ class Inspection:
             "curves": _listed(self.curves()),
             "notes": [
                 *self.surface.prepared.notes,
-                *standing_out(self.z, self.pixel),
+                *standing_out(self._filled, np.isfinite(self.z)),
                 *implausible_slope(self.z, self.pixel),
             ],
         }
 
 
 def _listed(values: Any) -> Any:
-    """Arrays as lists."""
+    """Return the arrays as lists."""
     if isinstance(values, dict):
         return {key: _listed(value) for key, value in values.items()}
     return values.tolist() if isinstance(values, np.ndarray) else values

@@ -5,21 +5,16 @@ from __future__ import annotations
 import contextlib
 import io
 import logging
-import struct
-import tokenize
 import warnings
-import zipfile
-import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
-import scipy
 
-from refimpl.errors import InputError, printable
+from refimpl.errors import InputError
 from refimpl.measured.channels import (
     ARRAYS,
     choose,
@@ -31,11 +26,9 @@ from refimpl.measured.channels import (
 )
 from refimpl.measured.file_kinds import kind_of
 from refimpl.measured.point_tables import points_map
-from refimpl.measured.reading import ALONG_Y, ARRAY, IMAGE, UNITS, Overrides, RawHeights, checked
+from refimpl.measured.reading import ALONG_Y, ARRAY, IMAGE, UNITS, Overrides, RawHeights, checked, first_line
 from refimpl.measured.text_lines import WYKO
-from refimpl.measured.workarounds import NMS_UNIT, Source, refuse_changed, rewritten
-
-T = TypeVar("T")
+from refimpl.measured.workarounds import NMS_UNIT, Source, rewritten
 
 TEXT_FORMATS = ("asc", "xyz")  # read by `text_tables`
 
@@ -45,17 +38,9 @@ UPWARDS = ("x3p", "sdf", "nc", "npy", "npz", "mat", "h5")
 
 MARKLESS = ("mat", "nms", "hgt")  # read for their suffix alone
 
-# Errors that a reader may raise on bytes that do not have the format of their mark. SurfaceTopography's own
-# errors are plain Exceptions and join these where it is imported.
-CORRUPT: tuple[type[Exception], ...] = (
-    ArithmeticError, AssertionError, AttributeError, EOFError, LookupError, MemoryError, OSError,
-    RuntimeError, SyntaxError, TypeError, ValueError, struct.error, tokenize.TokenError, zipfile.BadZipFile,
-    zlib.error,
-)  # fmt: skip
-
 
 def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
-    """Heights of a binary instrument file; ``head``: its first bytes. Raises InputError."""
+    """Return the heights of a binary instrument file; ``head``: its first bytes. Raises InputError."""
     library = library_for(path)
     if is_container(path):
         return _of_container(library, path, given)
@@ -63,11 +48,10 @@ def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
     failures = []
     for name in formats:
         try:
-            refuse_changed(path, name)
             return read_as(library, path, name, given, *rewritten(path, name, given))
         except InputError:
             raise
-        except corrupt(library) as error:
+        except Exception as error:
             failures.append(f"{name}: {first_line(error)}")
     if kind := kind_of(path, head):
         raise InputError("path", str(path), kind)
@@ -76,7 +60,7 @@ def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
 
 
 def claimed_by_magic(path: Path, head: bytes) -> bool:
-    """True if the first bytes are the mark of an instrument's format; False without the library."""
+    """Return True if the first bytes are the mark of an instrument's format; False without the library."""
     try:
         library = library_for(path)
     except InputError:
@@ -86,8 +70,8 @@ def claimed_by_magic(path: Path, head: bytes) -> bool:
 
 
 def _formats(library: ModuleType, path: Path, head: bytes) -> list[str]:
-    """Formats to try: those whose mark the first bytes are, then those of the suffix; if there is none, all
-    that the bytes allow but those without a mark, which take any bytes."""
+    """Return the formats to try: those whose mark the first bytes are, then those of the suffix; if there is
+    none, all that the bytes allow but those without a mark, which take any bytes."""
     match, suffix = library.IO.MagicMatch, path.suffix.lower()[1:]
     marked, own, others = [], [], []
     for reader in library.IO.readers:
@@ -106,7 +90,7 @@ def _formats(library: ModuleType, path: Path, head: bytes) -> list[str]:
 def read_as(
     library: ModuleType, path: Path, name: str, given: Overrides, source: Source, notes: tuple[str, ...] = ()
 ) -> RawHeights:
-    """Heights of one file, read as the format ``name`` from ``source``."""
+    """Return the heights of one file, read as the format ``name`` from ``source``."""
     with _quietly() as said, library.open_topography(source, format=name) as reader:
         index, channel = choose(path, name, reader, given)
         notes += taken(reader, channel)
@@ -132,7 +116,8 @@ def _quietly() -> Iterator[list[warnings.WarningMessage]]:
 def _record(
     path: Path, form: str, found: Any, sized: bool, given: Overrides, said: list[warnings.WarningMessage]
 ) -> RawHeights:
-    """The library's map as it lies here: its heights (m; missing: NaN), pixel, unit, and the library's words.
+    """Return the library's map as it lies here: its heights (m; missing: NaN), pixel, unit, and the library's
+    words.
 
     ``sized``: the file states its size.
     """
@@ -162,22 +147,22 @@ def _record(
 
 
 def _of_container(library: ModuleType, path: Path, given: Overrides) -> RawHeights:
-    """A measurement of a container of contact.engineering, scaled and detrended as its metadata say."""
+    """Return a measurement of a container of contact.engineering, scaled and detrended as its metadata
+    say."""
     from SurfaceTopography.Container.IO import CEReader
 
-    try:
-        with _quietly() as said:
-            reader = CEReader(str(path))
-            containers = range(reader.nb_containers)
-            members = [(k, j, m) for k in containers for j, m in enumerate(reader.members(k))]
-            k, j, member = members[chosen(path, [m.name for *_, m in members], given.channel)]
-            form = library.IO.detect_format(member.open)
-            found = reader.container(k)[j]
-            if found.dim != 2 or not found.is_uniform:
-                raise InputError("path", str(path), f"a map of heights ({member.name!r} is a line scan)")
-            reading = _record(path, form, found, True, given, said)
-    except corrupt(library) as error:
-        raise InputError("path", str(path), f"a file that can be read ({first_line(error)})") from error
+    with _quietly() as said:
+        reader = CEReader(str(path))
+        containers = range(reader.nb_containers)
+        members = [(k, j, m) for k in containers for j, m in enumerate(reader.members(k))]
+        k, j, member = members[chosen(path, [m.name for *_, m in members], given.channel)]
+        found = reader.container(k)[j]
+        if found.dim != 2 or not found.is_uniform:
+            raise InputError("path", str(path), f"a map of heights ({member.name!r} is a line scan)")
+        form = library.IO.detect_format(member.open)
+        if form == "asc" and member.open().read(len(WYKO)) in (WYKO, WYKO.encode()):
+            raise InputError("path", str(path), f"{member.name!r} unpacked: Wyko's text is read on its own")
+        reading = _record(path, form, found, True, given, said)
     names = tuple(m.name for *_, m in members)
     prepared = found.info.get("detrend_mode") or "none"
     note = f"{form} file {member.name!r} of a container of contact.engineering, its detrending {prepared!r}"
@@ -185,18 +170,8 @@ def _of_container(library: ModuleType, path: Path, given: Overrides) -> RawHeigh
     return replace(reading, channel=member.name, channels=names, source=source, notes=(note, *reading.notes))
 
 
-def read_or_refuse(path: Path, load: Callable[[Path], T], kinds: tuple[type[Exception], ...] = CORRUPT) -> T:
-    """``load(path)``, whose failures become one line of InputError."""
-    try:
-        return load(path)
-    except InputError:
-        raise
-    except kinds as error:
-        raise InputError("path", str(path), f"a file that can be read ({first_line(error)})") from error
-
-
 def library_for(path: Path) -> ModuleType:
-    """SurfaceTopography. Raises InputError where it is not installed."""
+    """Import SurfaceTopography. Raises InputError where it is not installed."""
     try:
         import SurfaceTopography
         import SurfaceTopography.Exceptions
@@ -208,21 +183,3 @@ def library_for(path: Path) -> ModuleType:
     logging.getLogger("SurfaceTopography").addHandler(logging.NullHandler())  # nothing on stderr
     module: ModuleType = SurfaceTopography
     return module
-
-
-def corrupt(library: ModuleType) -> tuple[type[Exception], ...]:
-    """All that the library raises on files that are not what they claim to be."""
-    own = library.Exceptions  # with no base in common
-    return (
-        *CORRUPT,
-        scipy.io.matlab.MatReadError,
-        own.ReadFileError,
-        own.UnknownFileFormat,
-        own.CannotPerformAnalysisError,
-    )
-
-
-def first_line(error: object) -> str:
-    """One line of an error or a warning: its kind and its own words."""
-    lines = [line.strip() for line in str(error).splitlines() if line.strip()] or [""]
-    return f"{type(error).__name__}: {printable(lines[0])[:160]}"

@@ -11,13 +11,14 @@ CORE = 0.4  # material ratio of the core's secant
 
 
 def material_ratio(z: Array, classes: int = CLASSES) -> tuple[Array, Array]:
-    """Material ratios 0 to 1, and the heights (m, from the mean) that those shares of the points reach."""
+    """Return the material ratios 0 to 1, and the heights (m, from the mean) that those shares of the points
+    reach."""
     ratio = np.linspace(0.0, 1.0, classes + 1)
     return ratio, np.nanquantile(z, 1.0 - ratio) - np.nanmean(z)
 
 
 def core_parameters(z: Array) -> dict[str, float]:
-    """Sk, Spk, Svk (m): depth of the core, and reduced peaks above and dales below it.
+    """Return Sk, Spk, Svk (m): depth of the core, and reduced peaks above and dales below it.
 
     The core's line is fitted over the 40 % of the curve whose secant is the flattest.
     """
@@ -31,6 +32,6 @@ def core_parameters(z: Array) -> dict[str, float]:
 
 
 def _reduced(beyond: Array) -> float:
-    """Height of the triangle whose base and area are those beyond the core."""
+    """Return the height of the triangle whose base and area are those beyond the core."""
     share = float(np.mean(beyond > 0))
     return 2.0 * float(np.maximum(beyond, 0.0).mean()) / share if share else 0.0

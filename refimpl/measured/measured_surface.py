@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -143,7 +144,7 @@ class MeasuredSurface(Surface):
         return self._with(turn_over=True)
 
     def _with(self, **changes: Any) -> Self:
-        """The same file otherwise seen, read and filtered once."""
+        """Return the same file otherwise seen, read and filtered once."""
         other = replace(self, **changes)
         for name in ("reading", "prepared"):  # cached properties
             vars(other)[name] = getattr(self, name)
@@ -165,12 +166,28 @@ class MeasuredSurface(Surface):
         if grid.periodic:
             raise InputError("periodic", True, f"false: {self._file.name} does not repeat (repeats = true?)")
         window = self._crop(grid.lengths, offset)
+        found: Array = self._last("sampled", (grid, offset), partial(self._resampled, grid, window))
+        return found.copy()
+
+    def _resampled(self, grid: Grid, window: Crop) -> Array:
         heights, (i, j) = window.filled(self._central(grid.lengths)[1])
         x, y = window.positions(grid.x, 0), window.positions(grid.y, 1)
         return resample(heights, x - i.start, y - j.start)
 
+    @cached_property
+    def _results(self) -> dict[str, tuple[object, Any]]:
+        return {}
+
+    def _last(self, name: str, key: object, compute: Callable[[], Any]) -> Any:
+        """Return the last result of that name where its key is the same: a solve, its bars and notes ask in
+        turn."""
+        known = self._results.get(name)
+        if known is None or known[0] != key:
+            self._results[name] = known = key, compute()
+        return known[1]
+
     def _repeated(self, grid: Grid, offset: tuple[float, float]) -> Array:
-        """Heights of a map that repeats with its own area."""
+        """Return the heights of a map that repeats with its own area."""
         reading, centre = self._oriented.reading, self._oriented.centre
         times = [length / period for length, period in zip(grid.lengths, reading.area, strict=True)]
         if grid.periodic and any(abs(n - max(round(n), 1)) > ROUNDING * n for n in times):
@@ -197,14 +214,20 @@ class MeasuredSurface(Surface):
         return window
 
     def _central(self, lengths: tuple[float, float]) -> tuple[Array, Form, Array]:
-        """At offset 0: the window's points (missing ones NaN), their form, and what is left of them."""
+        """Return at offset 0 the window's points (missing ones NaN), their form, and what is left of them."""
+        found: tuple[Array, Form, Array] = self._last("form", lengths, partial(self._levelled, lengths))
+        return found
+
+    def _levelled(self, lengths: tuple[float, float]) -> tuple[Array, Form, Array]:
         window = self._crop(lengths)
         (i, j), reading = window.points, window.reading
         z = reading.heights[i, j]
         x, y = np.arange(i.start, i.stop, dtype=float), np.arange(j.start, j.stop, dtype=float)
         assert self.level is not None  # set in __post_init__
         form = fit_form(x, y, z, self.level, reading.pixel)
-        return z, form, z - form(x, y)
+        rest = z - form(x, y)
+        rest.flags.writeable = False  # kept for the next who asks
+        return z, form, rest
 
     def levelled(self, lengths: tuple[float, float]) -> tuple[Form, Array, tuple[float, float]]:
         """Form of the window of those lengths (m) at offset 0, what is left of its points, their spacings."""
@@ -240,7 +263,8 @@ class MeasuredSurface(Surface):
         return self._central(grid.lengths)[2], self._oriented.reading.pixel
 
     def notes(self, grid: Grid) -> tuple[str, ...]:
-        """Notes on reading and preparation, the form subtracted, filled points and doubtful sizes."""
+        """Return the notes on reading and preparation, the form subtracted, filled points and doubtful
+        sizes."""
         name, window = self._file.name, self._crop(grid.lengths)
         z, form, rest = self._central(grid.lengths)
         pixel = self._oriented.reading.pixel
@@ -252,7 +276,8 @@ class MeasuredSurface(Surface):
                 f"{name}: level {self.level!r} fitted in the window (slopes {tilt}{bent}) and subtracted; "
                 f"rms height there {np.nanstd(z):.4g} m before, {np.nanstd(rest):.4g} m after"
             )
-        said += [f"{name}: {note}" for note in (*standing_out(rest, pixel), *implausible_slope(rest, pixel))]
+        doubts = *standing_out(fill(rest, pixel), np.isfinite(rest)), *implausible_slope(rest, pixel)
+        said += [f"{name}: {note}" for note in doubts]
         if window.lost:
             said.append(
                 f"{name}: {window.lost} of {window.size} points in the window are missing, filled in here"

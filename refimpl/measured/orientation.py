@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from refimpl.errors import MOST, InputError, require_number, require_one_of
 from refimpl.measured.readers import RawHeights
 
@@ -26,7 +24,7 @@ def check_orientation(mirror: object, rotate_deg: object, turn_over: object) -> 
 
 
 def checked_centre(centre: object) -> tuple[float, float]:
-    """The point (m) of the key ``centre``. Raises InputError."""
+    """Return the point (m) of the key ``centre``. Raises InputError."""
     allowed = "two lengths in m from the corner of the file's own area, (x, y)"
     if not isinstance(centre, list | tuple) or len(centre) != 2:
         raise InputError("centre", centre, allowed)
@@ -42,34 +40,6 @@ class Oriented:
     reading: RawHeights
     centre: tuple[float, float]
 
-    def negated(self) -> Oriented:
-        """``z -> -z``: the surface that a replica was taken from."""
-        return self._with(-self.reading.heights, self.centre)
-
-    def mirrored(self, axis: int) -> Oriented:
-        """``x -> -x`` (axis 0) or ``y -> -y`` (axis 1)."""
-        centre = tuple(
-            edge - at if k == axis else at
-            for k, (edge, at) in enumerate(zip(self.reading.area, self.centre, strict=True))
-        )
-        return self._with(np.flip(self.reading.heights, axis), (centre[0], centre[1]))
-
-    def rotated(self, degrees: int) -> Oriented:
-        """Turned anticlockwise in the plane: ``(x, y) -> (-y, x)`` for 90 degrees."""
-        found = self
-        for _ in range(degrees // 90):
-            (x, y), (dx, dy) = found.centre, found.reading.pixel
-            turned = replace(found.reading, heights=found.reading.heights.T[::-1], pixel=(dy, dx))
-            found = Oriented(turned, (found.reading.area[1] - y, x))
-        return found
-
-    def turned_over(self) -> Oriented:
-        """Turned over about the x axis: ``z(x, y) -> -z(x, -y)``."""
-        return self.mirrored(1).negated()
-
-    def _with(self, heights: np.ndarray, centre: tuple[float, float]) -> Oriented:
-        return Oriented(replace(self.reading, heights=heights), centre)
-
 
 def oriented(
     reading: RawHeights,
@@ -84,17 +54,24 @@ def oriented(
 
     ``centre`` (m) counts from the corner of the file's own measured area; None is its middle.
 
+    >>> import numpy as np
     >>> steps = RawHeights(np.array([[1.0, 2.0], [3.0, 4.0]]), (1.0, 1.0), "steps", "by hand")
     >>> found = oriented(steps, replica=False, mirror=None, rotate_deg=90, turned_over=False, centre=None)
     >>> found.reading.heights  # heights that rose along x rise along y
     array([[2., 4.],
            [1., 3.]])
     """
-    middle = reading.area[0] / 2.0, reading.area[1] / 2.0
-    found = Oriented(reading, middle if centre is None else centre)
-    if replica:
-        found = found.negated()
-    if mirror is not None:
-        found = found.mirrored(MIRRORS.index(mirror))
-    found = found.rotated(rotate_deg)
-    return found.turned_over() if turned_over else found
+    z, (dx, dy), (width, height) = reading.heights, reading.pixel, reading.area
+    x, y = (width / 2.0, height / 2.0) if centre is None else centre
+    if replica:  # z -> -z: the surface that it was taken from
+        z = -z
+    if mirror == "x":
+        z, x = z[::-1], width - x
+    elif mirror == "y":
+        z, y = z[:, ::-1], height - y
+    for _ in range(rotate_deg // 90):  # (x, y) -> (-y, x)
+        z, x, y = z.T[::-1], height - y, x
+        (dx, dy), (width, height) = (dy, dx), (height, width)
+    if turned_over:  # about the x axis: z(x, y) -> -z(x, -y)
+        z, y = -z[:, ::-1], height - y
+    return Oriented(replace(reading, heights=z, pixel=(dx, dy)), (x, y))

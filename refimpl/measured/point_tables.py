@@ -11,18 +11,13 @@ from refimpl.errors import InputError, size_text
 from refimpl.grid import Array
 from refimpl.measured.reading import MAX_POINTS, UNITS, Overrides, RawHeights, checked
 
-POINT = 3  # columns
+POINT = 3  # columns; a map has four at least
 _SAME_PITCH = 0.01  # relative difference of two pitches: digits of a given one
 _UNIT = re.compile(rf"(?<!\w)({'|'.join(UNITS)})(?!\w)")
 
 
-def is_triples(rows: Array) -> bool:
-    """True if the rows are points x, y, z: a map has four columns at least."""
-    return bool(rows.shape[1] == POINT)
-
-
 def on_grid(path: Path, points: Array) -> tuple[Array, tuple[float, float]]:
-    """Heights ``[i, j]`` of points ``(x, y, z)`` and the pitch of their grid; absent points are NaN.
+    """Return the heights ``[i, j]`` of points ``(x, y, z)`` and the pitch of their grid; absent ones are NaN.
 
     The pitch is the median distance between neighbouring distinct coordinates. Raises InputError for a line
     scan, for points more than a tenth of the pitch off the grid and for two points in one place.
@@ -36,8 +31,8 @@ def on_grid(path: Path, points: Array) -> tuple[Array, tuple[float, float]]:
     i, j = indices
     shape = int(i.max()) + 1, int(j.max()) + 1
     if shape[0] * shape[1] > 25 * len(z) + 1000:
-        found = f"{len(z)} points would fill {shape[0]} x {shape[1]} places; are the columns x, y, z?"
-        raise InputError("path", str(path), f"points on a regular grid ({found})")
+        found = f"{len(z)} points would fill {shape[0]} x {shape[1]} places"
+        raise InputError("path", str(path), f"points x, y, z on a regular grid ({found})")
     heights = np.full(shape, np.nan)
     heights[i, j] = z
     twice = len(z) - len(np.unique(i * shape[1] + j))
@@ -59,7 +54,7 @@ def _positions(path: Path, name: str, along: Array) -> tuple[Array, float]:
     off = float(np.abs(place - np.rint(place)).max())
     if off > 0.1:
         raise InputError(
-            "path", str(path), f"points on a regular grid ({off:.2g} of the pitch in {name} off it)"
+            "path", str(path), f"points x, y, z on a regular grid ({off:.2g} of the pitch in {name} off it)"
         )
     return np.rint(place).astype(np.intp), pitch
 
@@ -81,7 +76,7 @@ def _check_pitch(path: Path, pitch: tuple[float, float], stated: float, given: O
 def points_map(
     path: Path, points: Array, given: Overrides, header: tuple[str, ...] = (), notes: tuple[str, ...] = ()
 ) -> RawHeights:
-    """The map of points x, y, z in the given unit, or in the three that a line of the header names."""
+    """Return the map of points x, y, z in the given unit, or in the three that a line of the header names."""
     found: list[list[str]] = [_UNIT.findall(line) for line in header]
     named = next((units for units in found if len(units) == POINT), None)
     own = given.unit or (named[-1] if named else None)

@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 
 from refimpl.errors import InputError, require_one_of
-from refimpl.grid import Array
+from refimpl.grid import Array, Mask
 from refimpl.measured.detrending import fit
 from refimpl.measured.instrument_files import library_for
 from refimpl.measured.missing_points import fill
@@ -17,9 +17,10 @@ from refimpl.measured.reading import RawHeights
 from refimpl.surfaces.surface import positive
 
 NEIGHBOURHOOD = 5  # points an axis
-PERCENTILE = 80  # percentile of absolute Gaussian distances: five of 25 points may be outliers
-PERCENTILE_TO_RMS = 1.2816  # factor from that percentile to their rms
+_RANK = 20  # rank among 25 points: the 80th percentile; four or five of them may be outliers
+PERCENTILE_TO_RMS = 1.2816  # factor from the 80th percentile of absolute Gaussian distances to their rms
 MAD_TO_RMS = 1.4826  # from the median of absolute Gaussian distances to their rms
+_ROUNDING = 1e-9  # share of the rms height
 REACH = 1.5  # cut-off wavelengths of padding: the weight there is exp(-1.5^2 pi^2 / ln 2) = 1e-14
 
 
@@ -71,24 +72,33 @@ def prepare(
 
 
 def _without_outliers(reading: RawHeights, times: float, repeats: bool) -> RawHeights:
-    missing = np.isnan(reading.heights)
-    away = off_neighbours(_filled(reading), repeats)
-    typical = MAD_TO_RMS * float(np.median(away[~missing]))
-    around = scipy.ndimage.percentile_filter(
-        away, PERCENTILE, NEIGHBOURHOOD, mode="wrap" if repeats else "nearest"
-    )
-    rounding = 1e-9 * float(np.nanstd(reading.heights))
-    out = ~missing & (away > times * np.maximum(around / PERCENTILE_TO_RMS, max(typical, rounding)))
+    out, spread = outlying(_filled(reading), np.isfinite(reading.heights), times, repeats)
     note = (
         f"{np.count_nonzero(out)} outliers, more than {times:g} spreads off their neighbours (over the map "
-        f"one spread is {typical:.3g} m), are taken as missing"
+        f"one spread is {spread:.3g} m), are taken as missing"
     )
     return replace(reading, heights=np.where(out, np.nan, reading.heights), notes=(*reading.notes, note))
 
 
+def outlying(z: Array, known: Mask, times: float, repeats: bool = False) -> tuple[Mask, float]:
+    """Return which points are outliers as `prepare` has them, and the spread (m) over the map.
+
+    ``known`` : points that the file has; the others are filled
+    """
+    away = off_neighbours(z, repeats)
+    spread = max(MAD_TO_RMS * float(np.median(away[known])), _ROUNDING * float(z[known].std()))
+    out = known & (away > times * spread)
+    i, j = np.nonzero(out)
+    padded = np.pad(away, NEIGHBOURHOOD // 2, mode="wrap" if repeats else "edge")
+    steps = range(NEIGHBOURHOOD)
+    around = np.partition([padded[i + k, j + m] for k in steps for m in steps], _RANK, axis=0)[_RANK]
+    out[i, j] = away[i, j] > times * around / PERCENTILE_TO_RMS
+    return out, spread
+
+
 def off_neighbours(z: Array, repeats: bool) -> Array:
-    """Distance of each point from its neighbours: the median, over the four lines through it, of that from
-    the mean of the two neighbours on the line. Lines that leave the map count as straight."""
+    """Return the distance of each point from its neighbours: the median, over the four lines through it, of
+    that from the mean of the two neighbours on the line. Lines that leave the map count as straight."""
     padded = np.pad(z, 1, mode="wrap") if repeats else np.pad(z, 1, mode="reflect", reflect_type="odd")
     nx, ny = z.shape
     total, low, high = np.zeros_like(z), np.full_like(z, np.inf), np.full_like(z, -np.inf)
@@ -144,7 +154,8 @@ def _filtered(
 
 
 def gaussian_filter(z: Array, pixel: tuple[float, float], wavelength: float, repeats: bool = False) -> Array:
-    """Mean of ``z`` with Gaussian weights, transmission 2^-(wavelength f)^2 at the spatial frequency f.
+    """Return the mean of ``z`` with Gaussian weights, transmission 2^-(wavelength f)^2 at the spatial
+    frequency f.
 
     Beyond the border there is nothing: the weights inside are scaled to a sum of one. ``repeats``: periodic.
     """

@@ -61,7 +61,7 @@ def read_elsewhere(path: Path, load: Callable[[], T]) -> T:
 
 
 def _reader() -> subprocess.Popen[bytes]:
-    """The living reader, started where there is none."""
+    """Return the living reader, started where there is none."""
     own = os.getpid()
     if own not in _started or _started[own].poll() is not None:
         _started[own] = subprocess.Popen(
@@ -91,7 +91,7 @@ def _end() -> int | None:
 
 
 def serve() -> None:
-    """In the reader: answer until standard input ends. What parsers print goes nowhere."""
+    """Answer in the reader process until standard input ends. What parsers print goes nowhere."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     with os.fdopen(os.dup(1), "wb") as answers, open(os.devnull, "wb") as nowhere:
         os.dup2(nowhere.fileno(), 1)

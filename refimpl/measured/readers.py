@@ -17,17 +17,8 @@ import numpy as np
 from refimpl.errors import InputError, size_text
 from refimpl.grid import Array
 from refimpl.measured.file_kinds import kind_of
-from refimpl.measured.instrument_files import (
-    CORRUPT,
-    claimed_by_magic,
-    corrupt,
-    first_line,
-    library_for,
-    read_as,
-    read_instrument,
-    read_or_refuse,
-)
-from refimpl.measured.point_tables import is_triples, points_map
+from refimpl.measured.instrument_files import claimed_by_magic, library_for, read_as, read_instrument
+from refimpl.measured.point_tables import POINT, points_map
 from refimpl.measured.reading import (
     IMAGE,
     MAX_BYTES,
@@ -37,6 +28,7 @@ from refimpl.measured.reading import (
     RawHeights,
     checked,
     far_points,
+    read_or_refuse,
 )
 from refimpl.measured.text_lines import WYKO
 from refimpl.measured.text_tables import TextTable, read_table
@@ -54,7 +46,7 @@ def read(
     pixel_size: tuple[float, float] | None = None,
     channel: str | int | None = None,
 ) -> RawHeights:
-    """Heights of one file, x to the right and y up as seen from outside.
+    """Return the heights of one file, x to the right and y up as seen from outside.
 
     ``unit`` of the heights (a key of UNITS) and ``pixel_size`` (m) serve files that state none and override
     those that do, with a note. ``.npy`` and text without a header are plain tables: row i at x_i, column j at
@@ -63,48 +55,36 @@ def read(
     for x and y in another unit. All else is read by SurfaceTopography.
     Raises InputError.
     """
-    found = _read(path, unit, pixel_size, channel)
+    given = Overrides(unit, pixel_size, channel)
+    found = read_or_refuse(path, lambda: _read(path, given))
     return replace(found, notes=(*found.notes, *far_points(found)))
 
 
-def _read(
-    path: Path, unit: str | None, pixel_size: tuple[float, float] | None, channel: str | int | None
-) -> RawHeights:
+def _read(path: Path, given: Overrides) -> RawHeights:
     _check_size(path)
-    given = Overrides(unit, pixel_size, channel)
-    head = read_or_refuse(path, _head)
     if path.suffix.lower() == ".npy":
-        return _plain(path, checked(path, read_or_refuse(path, _npy)), given, "as a plain array")
+        # mapped, so that a header that promises more than the file holds is refused before memory is taken
+        raw = np.lib.format.open_memmap(path, mode="r")
+        return _plain(path, checked(path, raw), given, "as a plain array")
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
     is_text = head.startswith(_UTF16) or b"\0" not in head
     if is_text and not claimed_by_magic(path, head):
-        return read_or_refuse(path, lambda file: _text(file, given, head))
+        return _text(path, given, head)
     return read_instrument(path, given, head)
 
 
 def _check_size(path: Path) -> None:
     if not os.path.isfile(path):  # a name may have any length
         raise InputError("path", str(path), "an existing file")
-    try:
-        size = path.stat().st_size
-        if zipfile.is_zipfile(path):
-            with zipfile.ZipFile(path) as archive:
-                size = max(size, sum(member.file_size for member in archive.infolist()))
-    except CORRUPT as error:
-        raise InputError("path", str(path), f"a readable file ({first_line(error)})") from error
+    size = path.stat().st_size
+    if zipfile.is_zipfile(path):
+        with zipfile.ZipFile(path) as archive:
+            size = max(size, sum(member.file_size for member in archive.infolist()))
     if not 0 < size <= MAX_BYTES:
         raise InputError(
             "path", str(path), f"at least 1 and at most {MAX_BYTES} bytes, unpacked as well (this: {size})"
         )
-
-
-def _head(path: Path) -> bytes:
-    with path.open("rb") as file:
-        return file.read(_HEAD)
-
-
-def _npy(path: Path) -> Array:
-    # mapped, so that a header that promises more than the file holds is refused before any memory is taken
-    return np.lib.format.open_memmap(path, mode="r")
 
 
 def _plain(
@@ -127,7 +107,7 @@ def _text(path: Path, given: Overrides, head: bytes) -> RawHeights:
         raise InputError(
             "path", str(path), f"a map (a line scan: {rows} rows of {columns} columns were found)"
         )
-    if is_triples(table.rows):
+    if columns == POINT and not table.is_sized:
         return points_map(path, table.rows, given, table.header, table.notes)
     if not table.header:
         return _plain(path, checked(path, table.rows), given, "as a plain table of text", table)
@@ -146,16 +126,12 @@ def _text(path: Path, given: Overrides, head: bytes) -> RawHeights:
 
 
 def _with_header(path: Path, table: TextTable, given: Overrides) -> RawHeights:
-    """Text whose header says what the library knows: Gwyddion's, SPIP's, Wyko's and others."""
+    """Return the text whose header says what the library knows: Gwyddion's, SPIP's, Wyko's and others."""
     library = library_for(path)
     if table.header[0].startswith(WYKO):
         table = replace(table, header=wyko_header(path, table.header))
-    text = table.normalised()
-
-    def load(file: Path) -> RawHeights:
-        return read_as(library, file, "asc", given, io.BytesIO(text), table.notes)
-
-    found = read_or_refuse(path, load, corrupt(library))
+    text = io.BytesIO(table.normalised())
+    found = read_or_refuse(path, lambda: read_as(library, path, "asc", given, text, table.notes))
     if not set(found.heights.shape) & set(table.blocks):
         allowed = (
             f"an image of {' or '.join(map(str, table.blocks))} lines, not {size_text(found.heights.shape)}"

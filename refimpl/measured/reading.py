@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
-from refimpl.errors import InputError, require_size, size_text
+from refimpl.errors import InputError, printable, require_size, size_text
 from refimpl.grid import Array
+
+T = TypeVar("T")
 
 MAX_BYTES = 256 * 2**20
 MAX_POINTS = 2**24
@@ -78,7 +82,8 @@ class Overrides:
         pixel: tuple[float, float] | None,
         what: str = "does not state them",
     ) -> tuple[str, tuple[float, float], tuple[str, ...]]:
-        """Unit, pixel, notes, from what the file states (None: nothing). Raises InputError if one lacks."""
+        """Return the unit, pixel, notes, from what the file states (None: nothing). Raises InputError if one
+        lacks."""
         if (self.unit or unit) is None or (self.pixel_size or pixel) is None:
             raise InputError("unit, pixel_size", (self.unit, self.pixel_size), f"both: {name} {what}")
         notes = []
@@ -98,8 +103,25 @@ class Overrides:
         return ASCII.get(used, used), edges, tuple(notes)
 
 
+def read_or_refuse(path: Path, load: Callable[[], T]) -> T:
+    """Return ``load()``, whose failures of any kind become one line of `InputError`."""
+    try:
+        return load()
+    except InputError:
+        raise
+    except Exception as error:  # other people's parsers raise anything
+        raise InputError("path", str(path), f"a file that can be read ({first_line(error)})") from error
+
+
+def first_line(error: object) -> str:
+    """Return one line of an error or a warning: its kind and its own words."""
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()] or [""]
+    return f"{type(error).__name__}: {printable(lines[0])[:160]}"
+
+
 def checked(path: Path, raw: Array) -> Array:
-    """Heights as doubles, missing ones NaN. Raises InputError for what is no map of real numbers."""
+    """Return the heights as doubles, missing ones NaN. Raises InputError for what is no map of real
+    numbers."""
     if raw.ndim != 2 or min(raw.shape) < 4 or raw.size > MAX_POINTS or raw.dtype.kind not in "fiu":
         what = f"{raw.dtype} of shape {raw.shape} in {path.name}"
         allowed = f"a 2-D table of real numbers, at least 4 an axis, at most {MAX_POINTS}"
@@ -112,7 +134,7 @@ def checked(path: Path, raw: Array) -> Array:
 
 
 def far_points(found: RawHeights) -> tuple[str, ...]:
-    """A note on points of one value far outside all others, which may stand for missing points."""
+    """Return a note on points of one value far outside all others, which may stand for missing points."""
     z, notes = found.heights[np.isfinite(found.heights)], []
     for value in {float(z.min()), float(z.max())} if z.size else ():
         others = z[z != value]
@@ -120,7 +142,7 @@ def far_points(found: RawHeights) -> tuple[str, ...]:
             continue
         low, high, size = float(others.min()), float(others.max()), UNITS[found.unit]
         usual = any(np.isclose(value, mark * size, 1e-6, 0) for mark in _NO_DATA)
-        if max(value - high, low - value) > (0.5 if usual else _FAR) * (high - low):
+        if (usual or high > low) and max(value - high, low - value) > (0.5 if usual else _FAR) * (high - low):
             span = f"far outside all others, {low / size:.4g} to {high / size:.4g}"
             shown = f"{z.size - others.size} points are at {value / size:.6g} {found.unit}, {span}"
             notes.append(f"{shown}: if they are missing points, write nan there")

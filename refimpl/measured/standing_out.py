@@ -5,27 +5,21 @@ from __future__ import annotations
 import numpy as np
 
 from refimpl.grid import Array, Mask
-from refimpl.measured.missing_points import fill
-from refimpl.measured.preparation import (
-    MAD_TO_RMS,
-    NEIGHBOURHOOD,
-    PERCENTILE,
-    PERCENTILE_TO_RMS,
-    off_neighbours,
-)
+from refimpl.measured.preparation import MAD_TO_RMS, outlying
 
 FAR = 8.0  # spreads: of Gaussian distances one in 10^15 is farther
 _LEAST_LINES = 16  # lines from which their steps have a spread
 _ROUNDING = 1e-9  # share of the rms height
 
 
-def standing_out(z: Array, pixel: tuple[float, float]) -> tuple[str, ...]:
-    """Return a note on the points, and one on the lines along each axis, that stand out; empty for none."""
-    known = np.isfinite(z)
+def standing_out(z: Array, known: Mask) -> tuple[str, ...]:
+    """Return a note on the points, and one on the lines along each axis, that stand out; empty for none.
+
+    ``known`` : points that the file has; the others are filled
+    """
     if not known.any():
         return ()
-    z = z if known.all() else fill(z, pixel)
-    points, notes = spikes(z, known), []
+    points, notes = int(np.count_nonzero(outlying(z, known, FAR)[0])), []
     if points:
         notes.append(
             f"{points} points stand out by more than {FAR:g} local spreads: outliers = {FAR:g} (--outliers "
@@ -38,23 +32,6 @@ def standing_out(z: Array, pixel: tuple[float, float]) -> tuple[str, ...]:
                 f'scan_lines = "{axis}" (--scan-lines {axis}) levels each; contact would run along them'
             )
     return tuple(notes)
-
-
-def spikes(z: Array, known: Mask) -> int:
-    """Return the number of points farther from their neighbours than `FAR` spreads, as `prepare` has them.
-
-    ``known`` : points that the file has; the others are filled
-    """
-    if min(z.shape) < NEIGHBOURHOOD:
-        return 0
-    away = off_neighbours(z, False)
-    typical = max(MAD_TO_RMS * float(np.median(away[known])), _ROUNDING * float(z[known].std()))
-    i, j = np.nonzero(known & (away > FAR * typical))
-    reach = NEIGHBOURHOOD // 2
-    padded = np.pad(away, reach, mode="edge")
-    around = [padded[i + k, j + m] for k in range(NEIGHBOURHOOD) for m in range(NEIGHBOURHOOD)]
-    local = np.percentile(around, PERCENTILE, axis=0) / PERCENTILE_TO_RMS if i.size else np.zeros(0)
-    return int(np.count_nonzero(away[i, j] > FAR * local))
 
 
 def scars(z: Array) -> int:

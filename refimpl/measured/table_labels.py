@@ -39,7 +39,7 @@ def is_title(sample: list[list[str]]) -> bool:
 
 
 def word_in_corner(sample: list[list[str]], unknown: list[str]) -> str:
-    """The first entry of the first row where it is the only one that is no number; else nothing."""
+    """Return the first entry of the first row where it is the only one that is no number; else nothing."""
     first = sample[0]
     return first[0] if len(first) > POINT and unknown == first[:1] and not is_title(sample) else ""
 
@@ -47,7 +47,8 @@ def word_in_corner(sample: list[list[str]], unknown: list[str]) -> str:
 def without_labels(
     path: Path, rows: Array, sample: list[list[str]], corner: str = ""
 ) -> tuple[Array, list[str]]:
-    """Heights without an index row or column; points x, y, z of heights in a frame of even coordinates.
+    """Return the heights without an index row or column; points x, y, z of heights in a frame of even
+    coordinates.
 
     Raises InputError for other coordinates beside the heights, and for a ``corner`` without them.
     """

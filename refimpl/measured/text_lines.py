@@ -1,4 +1,4 @@
-"""Lines of a text file: its encoding, spellings of missing points that begin like comments, Wyko's blocks."""
+"""Lines of a text file: encoding, missing points that begin like comments, header words, blocks of Wyko."""
 
 from __future__ import annotations
 
@@ -17,9 +17,34 @@ WYKO = "Wyko ASCII Data File Format"
 _WYKO_BLOCK = re.compile(r"(?!bad\b)([a-z]\w*)\s+\d+\s+\d+\b", re.IGNORECASE)
 WYKO_HEIGHTS = ("RAW_DATA", "OPD", "Raw", "SAMPLE_DATA")  # others are intensities and processed arrays
 
+# The library's words, and those of Gwyddion and of profilometers in German, French and Spanish
+_WORDS = {
+    "Channel": "channel|kanal|canal",
+    "Width": "width|breite|largeur|anchura|ancho",
+    "Height": "height|höhe|hoehe|hauteur|altura|alto",
+    "Value units": r"value units?|(?:werte?|z)-?einheit(?:en)?|einheiten|unités"
+    r"|unités? des? valeurs?|unidad(?:es)? de(?: los)? valor(?:es)?",
+}
+_STATED = re.compile(
+    "#?\\s*(?:" + "|".join(f"({spellings})" for spellings in _WORDS.values()) + ")"
+    r"(?:\s*[\[(](\w+)[\])])?\s*[:=;\t]\s*(.*)",
+    re.IGNORECASE,
+)
+_DECIMAL_COMMA = re.compile(r"^(0|\d+(?!,\d{3}\b)),(?=\d)")  # 1,024 may be thousands
+
+
+def in_english(line: str) -> str:
+    """Return a header's line as the library knows it: English words, a decimal point, the unit at the end."""
+    if (found := _STATED.fullmatch(line)) is None:
+        return line
+    word = next(word for word, spelled in zip(_WORDS, found.groups(), strict=False) if spelled)
+    *_, unit, value = found.groups()
+    value = _DECIMAL_COMMA.sub(r"\1.", value.replace(";", " ").strip())
+    return f"# {word}: {value} {unit or ''}".rstrip()
+
 
 def encoding_of(path: Path) -> str:
-    """UTF-8 or UTF-16 by the file's mark, UTF-8 if it is valid, else Latin-1."""
+    """Return UTF-8 or UTF-16 by the file's mark, UTF-8 if it is valid, else Latin-1."""
     with path.open("rb") as file:
         if file.read(2) in (b"\xff\xfe", b"\xfe\xff"):
             return "utf-16"
@@ -33,7 +58,8 @@ def encoding_of(path: Path) -> str:
 
 
 def lines_of(path: Path, encoding: str) -> Iterator[tuple[int, str]]:
-    """Number and text of each line, one at a time: a list takes several times what their numbers do."""
+    """Yield the number and text of each line, one at a time: a list takes several times what their numbers
+    do."""
     with path.open(encoding=encoding) as file:
         lines = (
             (number, _spelled(part.strip(" \xa0")))
@@ -46,14 +72,15 @@ def lines_of(path: Path, encoding: str) -> Iterator[tuple[int, str]]:
 
 
 def _spelled(line: str) -> str:
-    """The line with its missing points spelled nan; one of nothing else is a comment."""
+    """Return the line with its missing points spelled nan; one of nothing else is a comment."""
     if "#" not in line and "(" not in line:
         return line
     return line if _MISSING.fullmatch(line) else _MISSING.sub("nan", line)
 
 
 def _heights(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, str]]:
-    """Wyko's text without the arrays that are no heights: a block's line states its name, type and length."""
+    """Yield Wyko's text without the arrays that are no heights: a block's line states its name, type and
+    length."""
     keeps = True
     for number, line in lines:
         if block := _WYKO_BLOCK.match(line):

@@ -22,7 +22,7 @@ from refimpl.grid import Array
 from refimpl.measured.decimal_marks import refuse_ambiguous
 from refimpl.measured.point_tables import POINT
 from refimpl.measured.table_labels import is_title, without_labels, word_in_corner
-from refimpl.measured.text_lines import NOT_MEASURED, encoding_of, lines_of
+from refimpl.measured.text_lines import NOT_MEASURED, encoding_of, in_english, lines_of
 
 MAX_HEADER = 400  # lines before the numbers
 _SAMPLE = 50  # lines by whose entries labels of rows and columns are known
@@ -43,8 +43,13 @@ class TextTable:
     notes: tuple[str, ...]
     comments: tuple[tuple[int, str], ...] = ()
 
+    @property
+    def is_sized(self) -> bool:
+        """True if the header states the edges of an image, as Gwyddion does."""
+        return {"# Width", "# Height"} <= {line.partition(":")[0] for line in self.header}
+
     def normalised(self) -> bytes:
-        """Header, numbers and comments in UTF-8, with blanks between and decimal points."""
+        """Return the header, numbers and comments in UTF-8, with blanks between and decimal points."""
         text, begun = io.BytesIO(), 0
         text.write("".join(f"{line}\n" for line in self.header).encode())
         for row, comment in (*self.comments, (len(self.rows), "")):
@@ -78,7 +83,7 @@ def read_table(path: Path) -> TextTable:
         count = 0
         for number, line in islice(lines_of(path, encoding), start + titled, None):
             if line.startswith("#") and not layout.is_row(line, width):
-                comments.append((count, line))
+                comments.append((count, in_english(line)))
             elif line.strip() or len(layout.cells(line)) == width:  # tabs alone: missing points
                 if layout.splits_row(line):
                     allowed = f"comments that begin a line or follow a row (line {number}: {line[:40]!r})"
@@ -97,7 +102,7 @@ def read_table(path: Path) -> TextTable:
         notes = [_EMPTY.format("last")]
     rows[np.isinf(rows)] = np.nan
     _refuse_blocks(path, rows, blanks)
-    header = tuple(line for line in lines[:start] if line.strip(",; \t"))
+    header = tuple(in_english(line) for line in lines[:start] if line.strip(",; \t"))
     if stated := _NO_DATA.search("\n".join(header)):
         absent = rows == float(stated[2])
         rows[absent] = np.nan
@@ -119,7 +124,7 @@ class _Layout:
         return {None: "blank", "\t": "tab"}.get(self.separator, f"'{self.separator}'")
 
     def cells(self, line: str) -> list[str]:
-        """The entries of a line, without a comment at its end."""
+        """Return the entries of a line, without a comment at its end."""
         line = line.split("#")[0] if not line.startswith("#") else line
         return [cell.strip() for cell in line.split(self.separator)]
 
@@ -140,7 +145,7 @@ class _Layout:
         return bool(_NUMBER.fullmatch(cell) or (self.separator != "," and _COMMA_NUMBER.fullmatch(cell)))
 
     def unknown(self, cells: Iterable[str]) -> list[str]:
-        """Entries that are neither numbers nor missing."""
+        """Return the entries that are neither numbers nor missing."""
         return [c for c in cells if c and c.lower() not in NOT_MEASURED and not self.is_number(c)]
 
     def is_data(self, line: str) -> bool:
@@ -155,7 +160,7 @@ class _Layout:
         return len(cells) == width and (not unknown or 2 * len(set(unknown)) < known)
 
     def value(self, cell: str) -> float:
-        """NaN of what is missing. Raises ValueError."""
+        """Return NaN for what is missing. Raises ValueError."""
         if not cell.isascii():
             raise ValueError(cell)
         try:
@@ -214,7 +219,7 @@ def _refuse_blocks(path: Path, rows: Array, blanks: set[int]) -> None:
 
 
 def _plain_numbers(layout: _Layout, lines: Iterator[str]) -> Array | None:
-    """The numbers by NumPy's reader, 20 times faster; None for what it cannot read."""
+    """Return the numbers by NumPy's reader, 20 times faster; None for what it cannot read."""
     separator = layout.separator
     try:
         ended = lines if separator is None else (line.removesuffix(separator) for line in lines)
@@ -226,7 +231,8 @@ def _plain_numbers(layout: _Layout, lines: Iterator[str]) -> Array | None:
 def _numbers(
     path: Path, layout: _Layout, lines: Iterator[tuple[int, str]], width: int
 ) -> tuple[Array, list[str]]:
-    """The numbers of all lines, each of ``width`` entries, and notes. Raises InputError with the line."""
+    """Return the numbers of all lines, each of ``width`` entries, and notes. Raises InputError with the
+    line."""
     values, decimals, filled, short = array("d"), set[str](), [False, False], list[int]()
     for number, line in lines:
         if layout.separator != ",":

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -14,6 +14,7 @@ import numpy as np
 from refimpl.errors import MOST, InputError
 from refimpl.grid import Array
 from refimpl.measured.reader_process import read_elsewhere
+from refimpl.measured.reading import read_or_refuse
 
 T = TypeVar("T")
 
@@ -29,25 +30,19 @@ def read_untrusted(path: Path, load: Callable[[], T]) -> T:
     crash the process or take all its memory: binary and large files are read in another one
     (`reader_process`), to which ``load`` is pickled.
     """
-    reading = partial(_read_or_refuse, path, load)
+    reading = partial(read_or_refuse, path, partial(_read, path, load))
     return read_elsewhere(path, reading) if _is_risky(path) else reading()
 
 
-def _read_or_refuse(path: Path, load: Callable[[], T]) -> T:
-    try:
-        _refuse_external_data(path)
-        return load()
-    except InputError:
-        raise
-    except Exception as error:  # readers of forged bytes raise anything
-        found = " ".join(f"{type(error).__name__}: {error}".split())[:160]
-        raise InputError("path", str(path), f"a file that can be read ({found})") from error
+def _read(path: Path, load: Callable[[], T]) -> T:
+    _refuse_external_data(path)
+    return load()
 
 
 def _is_risky(path: Path) -> bool:
     if not os.path.isfile(path):  # no error for long names, no waiting for a pipe
         return False
-    with suppress(OSError), path.open("rb") as file:  # an error is for `_read_or_refuse`
+    with suppress(OSError), path.open("rb") as file:  # an error is for `read_or_refuse`
         head = file.read(_HEAD)
         return (b"\0" in head or os.path.getsize(path) > _SMALL) and not head.startswith(_NUMPY)
     return False
@@ -70,14 +65,6 @@ def _refuse_external_data(path: Path) -> None:
     is_hdf5: bool = path.is_file() and h5py.is_hdf5(path)
     if not is_hdf5:
         return
-    with h5py.File(path, "r") as file:
-        for name in _external(file, h5py):
-            allowed = f"an HDF5 file that holds all its data ({name[:60]!r} is in another file)"
-            raise InputError("path", str(path), allowed)
-
-
-def _external(file: Any, h5py: Any) -> Iterator[str]:
-    """Names of links and of data in other files."""
     found: list[str] = []
 
     def see_link(name: str, link: object) -> None:
@@ -88,6 +75,9 @@ def _external(file: Any, h5py: Any) -> Iterator[str]:
         if isinstance(item, h5py.Dataset) and (item.external or item.is_virtual):
             found.append(name)
 
-    file.visititems_links(see_link)
-    file.visititems(see_object)
-    return iter(found)
+    with h5py.File(path, "r") as file:
+        file.visititems_links(see_link)
+        file.visititems(see_object)
+    if found:
+        allowed = f"an HDF5 file that holds all its data ({found[0][:60]!r} is in another file)"
+        raise InputError("path", str(path), allowed)

@@ -1,35 +1,24 @@
 """Files that SurfaceTopography refuses or reads wrongly, rewritten in memory so that it reads them right.
 
-As of version 1.27.1: X3P of other writers than its own, compressed SUR, the lateral unit of NMS, Wyko's text,
-Gwyddion's fields without units.
+As of version 1.27.1: X3P of other writers than its own (`x3p`), compressed SUR, the lateral unit of NMS,
+Wyko's text, Gwyddion's fields without units.
 """
 
 from __future__ import annotations
 
-import hashlib
 import io
 import re
 import struct
-import zipfile
 import zlib
-from functools import partial
 from pathlib import Path
 
-import numpy as np
-
 from refimpl.errors import InputError
-from refimpl.grid import Array
+from refimpl.measured import x3p
 from refimpl.measured.reading import MAX_BYTES, UNITS, Overrides
 
 Source = str | io.BytesIO
 
-X3P_REVISION = "ISO5436 - 2000"  # the one text that the library takes
-_X3P_DATA = "bindata/data.bin"
 NMS_UNIT = 1e-6  # its spacing is in nm (surfalize reads it so); the library takes it for mm
-_CHECKSUM = (
-    r"<(?:\w+:)?(?:PointData|ValidPoints)Link>\s*([^<]*?)\s*</[^>]*>\s*"
-    r"<(?:\w+:)?MD5Checksum(?:PointData|ValidPoints)>\s*([0-9A-Fa-f]{32})\s*<"
-)
 _GWY_UNITS = b"si_unit_xy", b"si_unit_z"
 _GWY_FIELD = re.compile(rb"/\d+/data\0oGwyDataField\0(.{4})", re.DOTALL)
 _SUR_HEADER, _SUR_COMMENT = 512, "<hh"
@@ -39,7 +28,7 @@ _SUR_LENGTHS_AT = 314  # bytes: lengths of comment and private zone
 def rewritten(path: Path, name: str | None, given: Overrides) -> tuple[Source, tuple[str, ...]]:
     """Return what to hand to the library for a file of format ``name``, and a note of what was changed."""
     if name == "x3p":
-        return _x3p(path)
+        return x3p.rewritten(path)
     if name == "sur":
         return _sur(path.read_bytes(), path)
     if name == "gwy":
@@ -47,78 +36,8 @@ def rewritten(path: Path, name: str | None, given: Overrides) -> tuple[Source, t
     return str(path), ()
 
 
-def _x3p(path: Path) -> tuple[Source, tuple[str, ...]]:
-    """ISO 25178-72 asks for main.xml at the top and any revision; some writers pack a folder."""
-    with zipfile.ZipFile(path) as archive:
-        mains = [m for m in archive.namelist() if m.rpartition("/")[2].lower() == "main.xml"]
-        if not mains:
-            return str(path), ()
-        main = min(mains, key=len)
-        folder = main[: -len("main.xml")]
-        text = archive.read(main)
-        revision = re.search(rb"<Revision>\s*([^<]*?)\s*</Revision>", text)
-        found = revision.group(1).decode("latin-1") if revision else ""
-        backslash = re.search(rb"<\w*Link>[^<]*\\[^<]*<", text)
-        bare = re.sub(rb"<!--.*?-->", b"", text, flags=re.DOTALL)
-        values = None if b"<DataLink>" in bare else _data_list(path, bare)
-        plain = not folder and found == X3P_REVISION and not backslash and main == "main.xml"
-        if plain and values is None:
-            return str(path), ()
-        if revision:
-            text = text.replace(revision.group(0), f"<Revision>{X3P_REVISION}</Revision>".encode())
-        text = re.sub(rb"<\w*Link>[^<]*", lambda m: m.group(0).replace(b"\\", b"/"), text)
-        copy = io.BytesIO()
-        with zipfile.ZipFile(copy, "w") as target:
-            if values is not None:
-                text = _linked(re.sub(rb"<!--.*?-->", b"", text, flags=re.DOTALL))
-                target.writestr(_X3P_DATA, values.tobytes())
-            target.writestr("main.xml", text)
-            for member in archive.namelist():
-                if member != main and member.startswith(folder) and not member.endswith("/"):
-                    target.writestr(member[len(folder) :], archive.read(member))
-    copy.seek(0)
-    changed = [f"revision {found!r}"] if found != X3P_REVISION else []
-    changed += [] if values is None else ["its heights in main.xml"]
-    changed += [f"folder {folder!r} in the archive"] if folder else []
-    return copy, (f"X3P with {', '.join(changed)}",) if changed else ()
-
-
-def _data_list(path: Path, text: bytes) -> Array:
-    """Heights that stand in the XML, missing ones NaN."""
-    values = re.findall(rb"<Datum\s*(?:/>|>([^<]*)</Datum>)", text)
-    if any(b";" in v for v in values):
-        raise InputError("path", str(path), "X3P of a map of heights (this lists points of several axes)")
-    return np.array([float(v) if v.strip() else np.nan for v in values], dtype="<f8")
-
-
-def _linked(text: bytes) -> bytes:
-    """The XML with a link to doubles in place of its list."""
-    link = f"<DataLink><PointDataLink>{_X3P_DATA}</PointDataLink></DataLink>".encode()
-    text = re.sub(rb"<DataList>.*</DataList>", link, text, flags=re.DOTALL)
-    kind = re.compile(rb"(<CZ>.*?<DataType>)\s*\w\s*(</DataType>)", re.DOTALL)
-    return kind.sub(rb"\1D\2", text)
-
-
-def refuse_changed(path: Path, name: str) -> None:
-    """Raise `InputError` for data of an X3P file (ISO 25178-72) whose checksum in main.xml is another one."""
-    if name != "x3p":
-        return
-    with zipfile.ZipFile(path) as archive:
-        members = {member.replace("\\", "/"): member for member in archive.namelist()}
-        main = next((m for m in sorted(members, key=len) if m.rpartition("/")[2].lower() == "main.xml"), None)
-        text = archive.read(members[main]).decode("latin-1") if main else ""
-        for link, stated in re.findall(_CHECKSUM, text):
-            member = members.get(f"{main}"[: -len("main.xml")] + link.replace("\\", "/"))
-            if member is None:
-                continue
-            with archive.open(member) as data:
-                found = hashlib.file_digest(data, partial(hashlib.md5, usedforsecurity=False)).hexdigest()  # type: ignore[arg-type]  # a zip's member reads like a file
-            if found != stated.lower():
-                raise InputError("path", str(path), f"data of the checksum that main.xml states ({link})")
-
-
 def _sur(raw: bytes, path: Path) -> tuple[Source, tuple[str, ...]]:
-    """Units in UTF-8 become Latin-1. Compressed: a directory of streams (count; raw and packed length of
+    """Rewrite units in UTF-8 as Latin-1. Compressed: a directory of streams (count; raw and packed length of
     each), then the zlib streams."""
     raw = raw[:_SUR_HEADER].replace("µm\0".encode(), "µm\0\0".encode("latin-1")) + raw[_SUR_HEADER:]
     if not raw.startswith(b"DSCOMPRESSED"):
@@ -141,7 +60,7 @@ def _sur(raw: bytes, path: Path) -> tuple[Source, tuple[str, ...]]:
 
 
 def _gwy(raw: bytes, path: Path, given: Overrides) -> tuple[Source, tuple[str, ...]]:
-    """Fields that lack a unit get the given one and the given pixel, unless another field states its own."""
+    """Give fields that lack a unit the given one and the given pixel, unless another field states its own."""
     fields = [(m.end(), m.end() + int.from_bytes(m[1], "little")) for m in _GWY_FIELD.finditer(raw)]
     stated = [[_gwy_unit(raw[begin:end], key) for key in _GWY_UNITS] for begin, end in fields]
     if all(map(all, stated)) or any(set(units) <= set(UNITS) for units in stated):
@@ -164,13 +83,13 @@ def _gwy(raw: bytes, path: Path, given: Overrides) -> tuple[Source, tuple[str, .
 
 
 def _gwy_unit(field: bytes, key: bytes) -> str:
-    """Unit that a field states, or nothing."""
+    """Return the unit that a field states, or nothing."""
     found = re.search(rb"%b\0oGwySIUnit\0.{4}unitstr\0s([^\0]*)" % key, field, re.DOTALL)
     return found[1].decode("utf-8", "replace") if found else ""
 
 
 def wyko_header(path: Path, header: tuple[str, ...]) -> tuple[str, ...]:
-    """The header of Wyko's text with all numbers as type 7, the one that the library sees, and a Mult.
+    """Return the header of Wyko's text with all numbers as type 7, the one that the library sees, and a Mult.
 
     Heights are in nm if the second flag of the first line is 1, else in Wavelength / Mult nm.
     """

@@ -232,10 +232,11 @@ def certify(
     cap = problem.cap
     normal = problem.elasticity.normal(operator, pressure)
     lower, upper = problem.displacements(operator, pressure, traction, slopes, normal=normal)
+    box = Window.around((pressure != 0) | (traction != 0), margin=0)  # elsewhere the summands vanish
+    normal = normal[box.slices].copy()  # every array of a large grid counts
     found = problem.slopes(lower, upper, indentation)
     v = found.per_cosine_product(lower + upper)
     v += problem.gap
-    box = Window.around((pressure != 0) | (traction != 0), margin=0)  # elsewhere the summands vanish
     f, r, on_slopes = pressure[box.slices], traction[box.slices], found.windowed(box)
     lowest = float(np.min(v, where=pressure < cap, initial=np.inf))
     contact: Mask = f > 0
@@ -243,7 +244,7 @@ def certify(
     mean_v = approach_from(pressure, v, cap)
     approach = mean_v if problem.approach is None else problem.approach
     forces = resultants(f, r, on_slopes, problem.grid.element_area)
-    energy = 0.5 * inner(shares, normal[box.slices])
+    energy = 0.5 * inner(shares, normal)
     capped = pressed and not math.isinf(cap)
     gap = _capped_gap(pressure, v, cap, approach) if capped else inner(shares, v[box.slices] - lowest)
     of_flats = flat_rounding(problem) * float(f.max())
@@ -259,8 +260,10 @@ def certify(
         missed = missed_approach(pressure, v, cap, approach)
         missed += math.ulp(approach)  # the least approaches have no digits to agree in
         load_error = relative_gap(missed, energy) if pressed else 0.0
-    plastic = problem.indentation(pressure, lower + upper, found.cosine_product, approach)
-    requested = on_slopes if plastic is None else problem.slopes(lower, upper, plastic).windowed(box)
+    plastic, requested = None, on_slopes
+    if not math.isinf(cap):
+        plastic = problem.indentation(pressure, lower + upper, found.cosine_product, approach)
+        requested = problem.slopes(lower, upper, plastic).windowed(box)
     everywhere, at_cap = pressure > 0, pressure >= cap
     beyond = max(0.0, -float(f.min()), float(f.max()) - cap)
     return State(
@@ -296,7 +299,8 @@ def certify(
 
 
 def _shares(f: Array) -> Array:
-    """Pressures over their sum, as products of very small ones would underflow; 0 without contact."""
+    """Return the pressures over their sum, as products of very small ones would underflow; 0 without
+    contact."""
     total = float(f.sum())
     return f / total if total > 0 else f
 

@@ -35,20 +35,20 @@ class Influence(Protocol):
         """True if a uniform pressure displaces anything; in a periodic scene it does not."""
 
     def normal(self, pressure: Array) -> Array:
-        """``I[1/rho]`` applied to a pressure."""
+        """Return ``I[1/rho]`` applied to a pressure."""
 
     def shear(self, traction: Array) -> Array:
-        """``I[s/rho^2]`` applied to a traction along the sliding direction."""
+        """Return ``I[s/rho^2]`` applied to a traction along the sliding direction."""
 
     def shear_across(self, traction: Array) -> Array:
-        """``I[t/rho^2]`` applied to a traction across the sliding direction."""
+        """Return ``I[t/rho^2]`` applied to a traction across the sliding direction."""
 
 
 class WindowOperator(Influence, Protocol):
     """An influence by Fourier transforms, of a window onto itself."""
 
     def coupled(self, ratio: float) -> Callable[[Array], Array]:
-        """The product ``I[1/rho] + ratio I[s/rho^2]`` of a pressure."""
+        """Return the product ``I[1/rho] + ratio I[s/rho^2]`` of a pressure."""
 
     @property
     def symbol(self) -> Array:

@@ -41,6 +41,8 @@ def resultants(pressure: Array, traction: Array, slopes: Slopes, element_area: f
 
 def normal_terms(pressure: Array, traction: Array, slopes: Slopes, element_area: float) -> float:
     """Return the sum of the sizes of the terms of Eq. (2) (N), whose difference is N."""
+    if slopes.is_flat:
+        return float(np.sum(np.abs(pressure))) * element_area
     sizes = np.abs(pressure) * slopes.cos_x + np.abs(traction * slopes.sin_x)
     return float(np.sum(sizes * slopes.cos_y)) * element_area
 
@@ -83,5 +85,5 @@ def perimeter_corrected_area(contact: Mask, grid: Grid) -> float:
 
 
 def plasticity_index(reduced_modulus: float, hardness: float, rms: float, length: float) -> float:
-    """Eq. (12): ``psi = 2.2 (E' / H) (sigma_e / length)``, the printed length being epsilon."""
+    """Return Eq. (12): ``psi = 2.2 (E' / H) (sigma_e / length)``, the printed length being epsilon."""
     return 2.2 * reduced_modulus / hardness * rms / length

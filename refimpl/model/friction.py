@@ -73,7 +73,9 @@ class Friction:
 
     def traction(self, pressure: Array, active: Mask) -> Array:
         """Return Eq. (8): ``tau`` on the active set plus ``beta f`` (Pa)."""
-        return self.tau * active + self.beta * pressure
+        found = self.beta * pressure
+        found += self.tau * active
+        return found
 
     def shear_offset(self, pressure: Array, active: Mask) -> Array:
         """Return ``tau`` on the active set, zero outside (Pa)."""

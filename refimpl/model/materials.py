@@ -14,7 +14,7 @@ RIGID = 1e100  # Pa; beside any other body's it is as good as infinite, and its 
 class Material:
     """A linear elastic, isotropic material: Young's modulus ``E`` (Pa) and Poisson's ratio ``nu``.
 
-    ``E = math.inf`` is a rigid body. ``hardness`` (Pa), if given, is where contact pressures end
+    ``E = math.inf`` is a rigid body. ``hardness`` (Pa), if given, caps the contact pressures
     (`Scene.plastic`).
 
     Raises `InputError` unless ``E`` and ``hardness`` are positive and finite (``E`` may be infinite) and

@@ -23,7 +23,7 @@ class Terms:
     oblique : slope terms; without them cosines are 1 and sines 0 (small-slope approximation)
     tilted : shear moves the common surface (c, mean of both bodies): slope change by shear
     slope_correction : exact facet tractions in Eq. (7); False unless requested
-    plastic : pressures end at the hardness of the softer body
+    plastic : pressures are capped at the hardness of the softer body
     """
 
     coupled: bool | None = None

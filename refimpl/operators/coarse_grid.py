@@ -28,7 +28,8 @@ class CoarseGrid(NamedTuple):
 
     @classmethod
     def under(cls, shape: Shape, window: Callable[[Array], Array], first: float, beyond: int) -> CoarseGrid:
-        """The coarse grid for a window of elements, with points from `first` and as many beyond the cells.
+        """Return the coarse grid for a window of elements, with points from `first` and as many beyond the
+        cells.
 
         ``window`` is the weight by the distance, both in spacings.
         """
@@ -38,7 +39,7 @@ class CoarseGrid(NamedTuple):
         return cls((n * _CELLS + beyond, m * _CELLS + beyond), (n, m), window(points - elements))
 
     def spread(self, values: Array) -> Array:
-        """Sums of elements' values by the window about each point."""
+        """Return the sums of elements' values by the window about each point."""
         (n, m), (rows, columns), width = self.blocks, self.shape, self.weights.shape[1]
         if values.shape != (n * width, m * width):
             values = np.pad(values, [(0, k * width - s) for k, s in zip((n, m), values.shape, strict=True)])
@@ -50,7 +51,7 @@ class CoarseGrid(NamedTuple):
         return found.T
 
     def interpolate(self, values: Array, shape: Shape) -> Array:
-        """Values of points at the elements of a window."""
+        """Return the values of points at the elements of a window."""
         reach = len(self.weights)
         blocks = sliding_window_view(values, reach, axis=1)[:, ::_CELLS]
         along = (blocks.reshape(-1, reach) @ self.weights).reshape(self.shape[0], -1)

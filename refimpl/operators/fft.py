@@ -7,7 +7,7 @@ are not transformed, and columns of the result outside the target are not transf
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -19,6 +19,8 @@ from refimpl.grid.window import padded_length
 from refimpl.operators.kernel_tables import signed_table, unit_table
 from refimpl.operators.symmetric import even_hat, odd_hat
 from refimpl.operators.transforms import Complex, fourier, threads
+
+_COLUMNS = 256  # columns transformed at a time
 
 
 @dataclass
@@ -70,22 +72,22 @@ class FFTInfluence:
         self._from, self._to = zip(*placed, strict=True)
 
     def normal(self, pressure: Array) -> Array:
-        """``I[1/rho]`` applied to a pressure."""
+        """Return ``I[1/rho]`` applied to a pressure."""
         self.counter.add("normal", self._points)
         return self._convolve(pressure, self._normal_hat)
 
     def shear(self, traction: Array) -> Array:
-        """``I[s/rho^2]`` applied to a traction along the sliding direction."""
+        """Return ``I[s/rho^2]`` applied to a traction along the sliding direction."""
         self.counter.add("shear", self._points)
         return self._convolve(traction, self._shear_hat)
 
     def shear_across(self, traction: Array) -> Array:
-        """``I[t/rho^2]`` applied to a traction across the sliding direction."""
+        """Return ``I[t/rho^2]`` applied to a traction across the sliding direction."""
         self.counter.add("shear", self._points)
         return self._convolve(traction, self._across_hat)
 
     def coupled(self, ratio: float) -> Callable[[Array], Array]:
-        """The product ``I[1/rho] + ratio I[s/rho^2]`` of a pressure: both kernels in one."""
+        """Return the product ``I[1/rho] + ratio I[s/rho^2]`` of a pressure: both kernels in one."""
         hat = self._normal_hat + ratio * self._shear_hat
 
         def product(pressure: Array) -> Array:
@@ -137,7 +139,8 @@ class FFTInfluence:
         return even_hat(self._quarter("normal"), threads(points))
 
     def _quarter(self, kind: str, axis: int = 0) -> Array:
-        """A kernel at the offsets from 0 to half of each circle (m): that along an axis if it is tangential.
+        """Return a kernel at the offsets from 0 to half of each circle (m): that along an axis if it is
+        tangential.
 
         Rows are offsets along that axis.
         """
@@ -157,7 +160,8 @@ class FFTInfluence:
         return self._tangential_hat(self.direction + math.pi / 2)
 
     def _tangential_hat(self, angle: float) -> Complex:
-        """The kernel's transform: of quarters of its parts along x and y, unless offsets opposite 0 count."""
+        """Return the kernel's transform: of quarters of its parts along x and y, unless offsets opposite 0
+        count."""
         points = self._points
         cos, sin = math.cos(angle), math.sin(angle)
         if self._is_odd:
@@ -171,12 +175,12 @@ class FFTInfluence:
         )
 
     def _signed(self, kind: str, axis: int = 0) -> Array:
-        """A kernel at all offsets around the circles (m), rows along an axis."""
+        """Return a kernel at all offsets around the circles (m), rows along an axis."""
         table = signed_table(kind, self._offsets[axis], self._offsets[1 - axis], self._aspect(axis))
         return table * self.grid.spacings[axis]
 
     def _aspect(self, axis: int) -> float:
-        """An element's other edge over that along an axis."""
+        """Return an element's other edge over that along an axis."""
         return self.grid.aspect if axis == 0 else 1 / self.grid.aspect
 
     def _transformed(self, kernel: Array) -> Complex:
@@ -190,24 +194,26 @@ class FFTInfluence:
     def _forward(self, source: Array) -> Complex:
         (N, K), (along, place) = self._padded, self._from
         workers = threads(self._points)
-        self._columns[along] = source
         spectrum = np.empty((N // 2 + 1, K), dtype=np.complex128)
-        if place.start:
-            spectrum[:, : place.start] = 0
+        spectrum[:, : place.start] = 0
         spectrum[:, place.stop :] = 0
-        fourier.columns(self._columns, spectrum[:, place], workers)
+        padded = np.zeros((N, min(_COLUMNS, source.shape[1])))
+        for block in _blocks(source.shape[1]):
+            columns = source[:, block]
+            padded[along, : columns.shape[1]] = columns
+            at = slice(place.start + block.start, place.start + block.stop)
+            fourier.columns(padded[:, : columns.shape[1]], spectrum[:, at], workers)
         return fourier.rows(spectrum, workers, forward=True)
 
     def _backward(self, spectrum: Complex) -> Array:
-        N, workers = self._padded[0], threads(self._points)
+        (N, _), (along, place) = self._padded, self._to
+        workers = threads(self._points)
         spectrum = fourier.rows(spectrum, workers, forward=False)
-        found: Array = fourier.columns_back(spectrum[:, self._to[1]], N, workers)[self._to[0]]
+        found = np.empty(self.target.shape)
+        for block in _blocks(found.shape[1]):
+            at = slice(place.start + block.start, place.start + block.stop)
+            found[:, block] = fourier.columns_back(spectrum[:, at], N, workers)[along]
         return found
-
-    @cached_property
-    def _columns(self) -> Array:
-        """The source's columns, zero but for the source."""
-        return np.zeros((self._padded[0], self.source.shape[1]))
 
 
 class WholeGridInfluence(FFTInfluence):
@@ -221,13 +227,20 @@ class WholeGridInfluence(FFTInfluence):
         spectrum = self._forward(source[self.source.slices])
         spectrum *= hat
         del hat
-        for spent in ("_columns", "_normal_hat", "_shear_hat", "_across_hat"):
+        for spent in ("_normal_hat", "_shear_hat", "_across_hat"):
             vars(self).pop(spent, None)
         return self._backward(spectrum)
 
 
+def _blocks(count: int) -> Iterator[slice]:
+    """Yield the columns in blocks, so that no second array of all of them is needed."""
+    for start in range(0, count, _COLUMNS):
+        yield slice(start, min(start + _COLUMNS, count))
+
+
 def _padded(source: Window, target: Window) -> tuple[int, int]:
-    """Fast lengths that hold every offset once, or also its opposite if that takes few points more.
+    """Return the fast lengths that hold every offset once, or also its opposite if that takes few points
+    more.
 
     A kernel's transform then costs an eighth of an application instead of a half, which is worth a third.
     """
@@ -239,13 +252,14 @@ def _padded(source: Window, target: Window) -> tuple[int, int]:
 
 
 def _farthest(source: Window, target: Window) -> tuple[int, int]:
-    """The greatest offsets from source to target along each axis, either way."""
+    """Return the greatest offsets from source to target along each axis, either way."""
     rows = max(target.i1 - source.i0, source.i1 - target.i0) - 1
     return rows, max(target.j1 - source.j0, source.j1 - target.j0) - 1
 
 
 def _circle(n: int, lowest: int, highest: int) -> NDArray[np.int_]:
-    """Offsets around a circle of ``n`` points that holds ``lowest ... highest`` once, 0 at its start.
+    """Return the offsets around a circle of ``n`` points that holds ``lowest ... highest`` once, 0 at its
+    start.
 
     Even, but for the point opposite 0, where there is room: an even kernel then has a real transform.
     """
@@ -259,7 +273,7 @@ def _is_even(circle: NDArray[np.int_]) -> bool:
 
 
 def _places(n: int, shift: int, source: int, target: int) -> tuple[slice, slice]:
-    """Where source and target, ``shift`` further, lie on a circle of n points: neither across its end.
+    """Return where source and target, ``shift`` further, lie on a circle of n points: neither across its end.
 
     >>> _places(8, -2, 3, 5)
     (slice(2, 5, None), slice(0, 5, None))

@@ -17,6 +17,7 @@ from refimpl.kernels import normal_table, tangential_table
 _TABLES = {"normal": normal_table, "tangential": tangential_table}
 _SHARED = 4  # ratio of sides up to which a table is square: windows of all these shapes share it
 _KEPT = 8  # tables kept, the last used ones; a square grid needs two
+_LARGEST = 4_000_000  # entries of a table that is kept
 _cache: OrderedDict[tuple[str, float, bool], Array] = OrderedDict()
 
 
@@ -24,7 +25,7 @@ def unit_table(kind: str, shape: tuple[int, int], aspect: float = 1.0) -> Array:
     """Return a read-only table of ``I[1/rho]`` ("normal") or ``I[x/rho^2]`` ("tangential").
 
     Entry ``[i, j]`` belongs to the offset ``(i, j aspect)`` from an element of edges ``1 x aspect``. The
-    largest table so far is kept, and smaller ones are views of it.
+    largest table so far is kept up to 32 MB, and smaller ones are views of it.
     """
     n, m = shape
     if max(n, m) <= _SHARED * min(n, m):
@@ -36,7 +37,8 @@ def unit_table(kind: str, shape: tuple[int, int], aspect: float = 1.0) -> Array:
             n, m = max(n, table.shape[0]), max(m, table.shape[1])
         table = _TABLES[kind](n, m, 1.0, aspect, known=table)
         table.flags.writeable = False
-    _cache[key] = table
+    if table.size <= _LARGEST:
+        _cache[key] = table
     while len(_cache) > _KEPT:
         _cache.popitem(last=False)
     return table[: shape[0], : shape[1]]

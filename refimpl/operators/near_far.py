@@ -39,6 +39,7 @@ a product takes 0.75 of the time for 256, 0.55 for 512, 0.48 for 1024.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 from refimpl.grid import Array, Grid, Shape, Window
@@ -46,6 +47,7 @@ from refimpl.grid.window import padded_length
 from refimpl.operators.coarse_grid import CoarseGrid
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.split_kernels import REACH, WIDTH, far_quarter, near_quarter, window
+from refimpl.operators.transforms import fourier, threads
 
 Quarter = Callable[[str, Shape], Array]
 """A kernel at the offsets from 0 to half of each circle, in elements of edge one."""
@@ -76,25 +78,28 @@ class NearFarInfluence(FFTInfluence):
 
     @property
     def symbol(self) -> Array:
-        """See `FFTInfluence`; the transform is not kept."""
-        found = super().symbol.copy()
-        del self._normal_hat
-        return found
+        """See `FFTInfluence`: every second frequency is that of the kernel laid twice around half of it."""
+        points = math.prod(self.circle)
+        self.counter.add("normal kernel", points // 2)
+        table = self._quarter("normal")
+        table = table[:-1] + table[:0:-1]
+        table = table[:, :-1] + table[:, :0:-1]
+        return fourier.plane(table, self.circle, threads(points)).real
 
     def normal(self, pressure: Array) -> Array:
-        """``I[1/rho]`` applied to a pressure."""
+        """Return ``I[1/rho]`` applied to a pressure."""
         return self._sum(pressure, self._near.normal, self._far.normal)
 
     def shear(self, traction: Array) -> Array:
-        """``I[s/rho^2]`` applied to a traction along the sliding direction."""
+        """Return ``I[s/rho^2]`` applied to a traction along the sliding direction."""
         return self._sum(traction, self._near.shear, self._far.shear)
 
     def shear_across(self, traction: Array) -> Array:
-        """``I[t/rho^2]`` applied to a traction across the sliding direction."""
+        """Return ``I[t/rho^2]`` applied to a traction across the sliding direction."""
         return self._sum(traction, self._near.shear_across, self._far.shear_across)
 
     def coupled(self, ratio: float) -> Callable[[Array], Array]:
-        """The product ``I[1/rho] + ratio I[s/rho^2]`` of a pressure."""
+        """Return the product ``I[1/rho] + ratio I[s/rho^2]`` of a pressure."""
         near, far = self._near.coupled(ratio), self._far.coupled(ratio)
         return lambda pressure: self._sum(pressure, near, far)
 

@@ -31,22 +31,22 @@ class PeriodicInfluence:
         self.counter = counter if counter is not None else Counter()
 
     def normal(self, pressure: Array) -> Array:
-        """``I[1/rho]`` applied to a pressure."""
+        """Return ``I[1/rho]`` applied to a pressure."""
         self.counter.add("normal", self.grid.elements)
         return self._filter(pressure, self._normal_symbol)
 
     def shear(self, traction: Array) -> Array:
-        """``I[s/rho^2]`` applied to a traction along the sliding direction."""
+        """Return ``I[s/rho^2]`` applied to a traction along the sliding direction."""
         self.counter.add("shear", self.grid.elements)
         return self._filter(traction, self._tangential_symbol(self.direction))
 
     def shear_across(self, traction: Array) -> Array:
-        """``I[t/rho^2]`` applied to a traction across the sliding direction."""
+        """Return ``I[t/rho^2]`` applied to a traction across the sliding direction."""
         self.counter.add("shear", self.grid.elements)
         return self._filter(traction, self._tangential_symbol(self.direction + math.pi / 2))
 
     def coupled(self, ratio: float) -> Callable[[Array], Array]:
-        """The product ``I[1/rho] + ratio I[s/rho^2]`` of a pressure: both symbols in one."""
+        """Return the product ``I[1/rho] + ratio I[s/rho^2]`` of a pressure: both symbols in one."""
         symbol = self._normal_symbol + ratio * self._tangential_symbol(self.direction)
 
         def product(pressure: Array) -> Array:

@@ -54,7 +54,7 @@ class SpectralPreconditioner:
         self._symbol = (symbol.min() / symbol).astype(self._precision)
 
     def __call__(self, residual: Array) -> Array:
-        """The preconditioned residual, same shape; the caller masks argument and result."""
+        """Return the preconditioned residual, same shape; the caller masks argument and result."""
         points = math.prod(self._circle)
         self._counter.add("preconditioner", points)
         workers = threads(points)
@@ -80,7 +80,7 @@ class _Neighbours(NamedTuple):
 
     @classmethod
     def within(cls, squared: int, held: float) -> _Neighbours:
-        """Weights up to a squared distance, by one over the distance."""
+        """Return the weights up to a squared distance, by one over the distance."""
         along, across = np.indices((2 * _REACH + 1,) * 2).reshape(2, -1) - _REACH
         squares = along**2 + across**2
         near = (squares > 0) & (squares <= squared)
@@ -93,7 +93,7 @@ _TWENTY = _Neighbours.within(5, held=0.3)  # 0.25 to 0.5, or weights by its squa
 
 
 def extended(precondition: Apply, contact: Mask) -> Apply:
-    """The preconditioner with residuals continued beyond a contact, where that is worthwhile."""
+    """Return the preconditioner with residuals continued beyond a contact, where that is worthwhile."""
     return ExtendedPreconditioner(precondition, contact) if contact.size >= _WORTHWHILE else precondition
 
 
@@ -137,7 +137,7 @@ class ExtendedPreconditioner:
             self._left.ravel()[self._beyond] -= np.bincount(self._to, self._weights)
 
     def __call__(self, residual: Array) -> Array:
-        """The preconditioned residual, same shape; the caller masks argument and result.
+        """Return the preconditioned residual, same shape; the caller masks argument and result.
 
         An element that has come into contact since has a residual of its own, and goes on with that.
         """
@@ -159,7 +159,8 @@ class ExtendedPreconditioner:
 
 
 def _near(marked: Mask, width: int) -> Mask:
-    """Within a square's reach of something marked, in rows this long; a frame as wide is not marked."""
+    """Mark all within a square's reach of something marked, in rows this long; a frame as wide is not
+    marked."""
     for stride in (1, width):
         near = marked.copy()
         for step in range(stride, _REACH * stride + 1, stride):

@@ -25,14 +25,15 @@ _SIGNS = {"normal": (1, 1), "tangential": (-1, 1)}  # signs of opposite offsets,
 
 
 def window(distance: Array) -> Array:
-    """Bell of Kaiser and Bessel, one at its centre, at distances in spacings."""
+    """Return the bell of Kaiser and Bessel, one at its centre, at distances in spacings."""
     squared = np.maximum(1 - (2 * distance / WIDTH) ** 2, 0.0)
     bell: Array = scipy.special.i0(_WINDOW_SHAPE * np.sqrt(squared)) / scipy.special.i0(_WINDOW_SHAPE)
     return bell * (squared > 0)
 
 
 def near_quarter(kind: str, shape: Shape) -> Array:
-    """The near part at the offsets from 0 to half of each circle, as `unit_table` has the whole kernel."""
+    """Return the near part at the offsets from 0 to half of each circle, as `unit_table` has the whole
+    kernel."""
     quarter = np.zeros(shape)
     near = _near(kind)
     n, m = min(shape[0], len(near)), min(shape[1], len(near))
@@ -41,7 +42,7 @@ def near_quarter(kind: str, shape: Shape) -> Array:
 
 
 def far_quarter(kind: str, shape: Shape) -> Array:
-    """The far part between points of the coarse grid, with a window undone at either end."""
+    """Return the far part between points of the coarse grid, with a window undone at either end."""
     x, y = (COARSER * np.arange(float(n + _TAPS)) for n in shape)
     along, across = (_filter(n, sign) for n, sign in zip(shape, _SIGNS[kind], strict=True))
     quarter: Array = along @ _far(kind, x[:, None], y) @ across.T
@@ -60,21 +61,24 @@ def _near(kind: str) -> Array:
 
 
 def _far(kind: str, x: Array, y: Array) -> Array:
-    """``Phi(r) / r`` or ``x Psi(r) / r^2``."""
+    """Return ``Phi(r) / r`` or ``x Psi(r) / r^2``."""
     squared = x * x + y * y
-    inside = np.minimum(squared / RADIUS**2, 1.0)
+    at = squared < RADIUS**2
+    inside = squared[at] / RADIUS**2
     if kind == "normal":
-        near = np.polynomial.chebyshev.chebval(2 * inside - 1, _normal_inside())
-        return np.where(inside < 1, near, 1 / np.sqrt(np.maximum(squared, 1.0)))
+        found = 1 / np.sqrt(np.maximum(squared, 1.0))
+        found[at] = np.polynomial.chebyshev.chebval(2 * inside - 1, _normal_inside())
+        return found
     root = np.sqrt(1 - inside)
     beyond = root * np.cosh(SHAPE * root) - np.sinh(SHAPE * root) / SHAPE
-    share: Array = 1 - beyond / (np.cosh(SHAPE) - np.sinh(SHAPE) / SHAPE)
-    return x * share / np.maximum(squared, np.finfo(float).tiny)
+    found = x / np.maximum(squared, np.finfo(float).tiny)
+    found[at] *= 1 - beyond / (np.cosh(SHAPE) - np.sinh(SHAPE) / SHAPE)
+    return found
 
 
 @cache
 def _normal_inside() -> Array:
-    """Coefficients of ``Phi(r) / r`` by Chebyshev's polynomials in ``2 (r / R)^2 - 1``."""
+    """Return the coefficients of ``Phi(r) / r`` by Chebyshev's polynomials in ``2 (r / R)^2 - 1``."""
     points, weights = np.polynomial.legendre.leggauss(80)
     t = np.polynomial.chebyshev.chebpts1(41)
     at = np.sqrt((t[:, None] + 1) / 2) * (points + 1) / 2
@@ -85,7 +89,7 @@ def _normal_inside() -> Array:
 
 @cache
 def _taps() -> Array:
-    """The filter: in the band, the mean over an element divided by two windows; beyond, anything."""
+    """Return the filter: in the band, the mean over an element divided by two windows; beyond, anything."""
     k = np.linspace(0, np.pi / 2, 200)  # 1/spacing
     root = np.sqrt(_WINDOW_SHAPE**2 - (k * WIDTH / 2) ** 2)
     undone = WIDTH * np.sinh(root) / root / scipy.special.i0(_WINDOW_SHAPE)
@@ -97,7 +101,8 @@ def _taps() -> Array:
 
 
 def _filter(count: int, sign: int) -> Array:
-    """Matrix from values at ``count + _TAPS`` offsets from 0, of an even or odd field, to those filtered."""
+    """Return the matrix from values at ``count + _TAPS`` offsets from 0, of an even or odd field, to those
+    filtered."""
     taps, i, j = _taps(), np.arange(count)[:, None], np.arange(count + _TAPS)
     matrix: Array = taps[np.minimum(np.abs(i - j), _TAPS + 1)]
     matrix[:, 1:] += sign * taps[np.minimum(i + j, _TAPS + 1)][:, 1:]

@@ -13,12 +13,13 @@ from refimpl.operators.transforms import Complex, fourier
 
 
 def even_hat(quarter: Array, workers: int) -> Array:
-    """Real symbols of a kernel even along both axes. The quarter may be overwritten."""
+    """Return the real symbols of a kernel even along both axes. The quarter may be overwritten."""
     return _mirrored(fourier.even_plane(quarter, workers), 1.0)
 
 
 def odd_hat(along_x: Array, along_y: Array | None, workers: int) -> Complex:
-    """Symbols of the sum of kernels odd along the first axis and the second (if any), even along the other.
+    """Return the symbols of the sum of kernels odd along the first axis and the second (if any), even along
+    the other.
 
     Opposite 0 they are taken to be zero where they are odd: the caller sees to it that nobody needs that.
     """
@@ -31,5 +32,5 @@ def odd_hat(along_x: Array, along_y: Array | None, workers: int) -> Complex:
 
 
 def _mirrored(half: Array, sign: float) -> Array:
-    """Continued around the second axis' circle, with that sign beyond its half."""
+    """Continue around the second axis' circle, with that sign beyond its half."""
     return np.concatenate([half, sign * half[:, -2:0:-1]], axis=1)

@@ -26,7 +26,7 @@ def allowed_threads() -> int:
 
 @contextmanager
 def plain_number_of_threads() -> Iterator[None]:
-    """In the block, the environment has whole numbers of threads; ducc0 asserts that they are."""
+    """Write whole numbers of threads into the environment, in the block; ducc0 asserts that they are."""
     before = {name: os.environ.get(name) for name in _NAMES}
     plain = {name: str(_number(said or "") or allowed_threads()) for name, said in before.items()}
     os.environ.update(plain)
@@ -41,5 +41,5 @@ def plain_number_of_threads() -> Iterator[None]:
 
 
 def _number(said: str) -> int | None:
-    """The positive whole number that the text is, of six digits at most."""
+    """Return the positive whole number that the text is, of six digits at most."""
     return int(said) if re.fullmatch(r"\s*0*[1-9][0-9]{0,5}\s*", said) else None

@@ -30,25 +30,27 @@ class Library(Protocol):
     worthwhile: int
 
     def columns(self, values: Array, spectrum: Complex, workers: int) -> None:
-        """Forward along each column of real ``values``, into ``spectrum``."""
+        """Transform forward along each column of real ``values``, into ``spectrum``."""
 
     def rows(self, spectrum: Complex, workers: int, *, forward: bool) -> Complex:
-        """Along each row, best in place."""
+        """Transform along each row, best in place."""
 
     def columns_back(self, spectrum: Complex, length: int, workers: int) -> Array:
-        """Real columns of that length, backward."""
+        """Transform backward into real columns of that length."""
 
     def plane(self, values: Array, shape: tuple[int, ...], workers: int) -> Complex:
-        """Forward along both axes of real ``values``, padded with zeros to the shape."""
+        """Transform forward along both axes of real ``values``, padded with zeros to the shape."""
 
     def plane_back(self, spectrum: Complex, shape: tuple[int, ...], workers: int) -> Array:
-        """Real values of the shape, backward along both axes; the spectrum may be overwritten."""
+        """Transform backward into real values of the shape, along both axes; the spectrum may be
+        overwritten."""
 
     def even_plane(self, quarter: Array, workers: int) -> Array:
-        """An even field's transform, by quarters with both ends; the one given may be overwritten."""
+        """Return an even field's transform, by quarters with both ends; the one given may be overwritten."""
 
     def odd_plane(self, quarter: Array, workers: int) -> Array:
-        """``i`` times that of a field odd along the first axis, where both ends are taken to be zero."""
+        """Return ``i`` times that of a field odd along the first axis, where both ends are taken to be
+        zero."""
 
 
 class SciPy:
@@ -163,7 +165,7 @@ class Ducc:
 
 
 def best_installed() -> Library:
-    """ducc0 if there is one."""
+    """Return ducc0 if there is one."""
     try:
         return Ducc()
     except ImportError:
@@ -174,5 +176,6 @@ fourier = best_installed()
 
 
 def threads(points: int) -> int:
-    """Threads for a transform of that many points: one where it is over before a second has started."""
+    """Return the threads for a transform of that many points: one where it is over before a second has
+    started."""
     return allowed_threads() if points >= fourier.worthwhile else 1

@@ -10,7 +10,9 @@ gradient g carries the mean pressure ``0.6 E* g``: of Hertz's paraboloid this is
 
 In contact ``u_lower + u_upper = approach - h``, and each body takes its share of that by its compliance:
 without shear the common surface there is the mean of both heights, each weighted by the other body's
-compliance (the rigid body's own shape, if one is rigid).
+compliance (the rigid body's own shape, if one is rigid). Beside the contact each body ends at its own side of
+the clearance g, and the mean of both deformed surfaces is that same sum plus ``(upper share - 1/2) g``: where
+contact ends at a wall, the slope across its edge is this jump's.
 """
 
 from __future__ import annotations
@@ -18,7 +20,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,28 +81,33 @@ def expected_contact(problem: Problem) -> ExpectedContact:
     stiffness = _STIFFNESS * modulus * dA
     if problem.load is not None:
         contact = _bearing(coarse, stiffness, problem.load)
-        elements = int(np.count_nonzero(contact))
-        mean_pressure = problem.load / (elements * dA)
+        mean_pressure = problem.load / (int(np.count_nonzero(contact)) * dA)
     else:
         # half of what interferes: a sphere's contact circle has half the area of its interference
         elements = max(1, int(np.count_nonzero(gap < (problem.approach or 0.0))) // 2)
         contact = _first(_rising(gap), elements, gap)
+        elements = int(np.count_nonzero(contact))
         squares = float(_gradient_squared(coarse)[contact].sum())
         mean_pressure = stiffness * math.sqrt(squares * elements) / (elements * dA)
         mean_pressure = max(mean_pressure, _LEAST * modulus)
+    elements, level = int(np.count_nonzero(contact)), float(gap[contact].max())
     # a sphere's gap at the contact's edge is half the approach
-    approach = problem.approach or 2 * float(gap[contact].max())
+    approach = problem.approach or 2 * level
     near = gap < 2 * approach
     window = Window.around(near, margin=1).shape if near.any() else (0, 0)
-    seen = _FromHeights(approach, *_symmetries(coarse, problem), window)
-    expectation = _described(coarse, contact, np.ones(elements), mean_pressure, _PEAKED * mean_pressure, seen)
+    symmetric, mirrored = _symmetries(coarse, problem)
+    weights, clearance = np.ones(elements), np.maximum(gap - level, 0.0)
+    seen = _described(coarse, contact, weights, clearance, mean_pressure, _PEAKED * mean_pressure)
     finer = [n / m for n, m in zip(problem.grid.shape, coarse.grid.shape, strict=True)]
     rows, columns = (math.ceil(f * n) for f, n in zip(finer, window, strict=True))
-    return replace(expectation, elements=round(math.prod(finer) * elements), window=(rows, columns))
+    seen["elements"] = round(math.prod(finer) * elements)
+    return ExpectedContact(
+        **seen, approach=approach, symmetric=symmetric, mirrored=mirrored, window=(rows, columns)
+    )
 
 
 def _coarse(problem: Problem) -> Problem:
-    """The problem's heights at fewer points, if there are more than it takes."""
+    """Return the problem's heights at fewer points, if there are more than it takes."""
     n, m = problem.grid.shape
     grid = problem.grid.refined((min(n, _COARSE), min(m, _COARSE)))
     gap, mean_surface = (resampled(z, grid.shape) for z in (problem.gap, problem.mean_surface))
@@ -108,7 +115,7 @@ def _coarse(problem: Problem) -> Problem:
 
 
 def _bearing(problem: Problem, stiffness: float, load: float) -> Mask:
-    """The smallest number of lowest elements that carry the load, or all."""
+    """Return the smallest number of lowest elements that carry the load, or all."""
     order = _rising(problem.gap)
     squares = np.cumsum(_gradient_squared(problem).ravel()[order])
     carried = stiffness * np.sqrt(squares * np.arange(1, order.size + 1))
@@ -116,79 +123,75 @@ def _bearing(problem: Problem, stiffness: float, load: float) -> Mask:
 
 
 def _first(order: NDArray[np.intp], count: int, gap: Array) -> Mask:
-    """The first ``count`` elements of an order, or all."""
-    chosen = np.zeros(gap.shape, dtype=bool)
-    chosen.ravel()[order[:count]] = True
+    """Return the first ``count`` elements of an order, or all, and those as low as the last: a flat top
+    touches as a whole."""
+    last = order[min(count, order.size) - 1]
+    chosen: Mask = gap <= gap.flat[last] + _ROUNDING * np.ptp(gap)
     return chosen
 
 
 def _rising(gap: Array) -> NDArray[np.intp]:
-    """All elements from the lowest on, equal ones in the grid's order."""
+    """Return all elements from the lowest on, equal ones in the grid's order."""
     return np.argsort(gap, axis=None, kind="stable")
 
 
 def _gradient_squared(problem: Problem) -> Array:
-    """Squared gradient of the gap."""
+    """Return the squared gradient of the gap."""
     slopes = _slopes(problem, problem.gap)
     squared: Array = slopes.tan_x**2 + slopes.tan_y**2
     return squared
 
 
-def solved_contact(problem: Problem, pressure: Array, before: ExpectedContact) -> ExpectedContact:
-    """Return the description of a solved contact; what follows from the heights alone is that of
-    ``before``."""
+def solved_contact(
+    problem: Problem, pressure: Array, clearance: Array, before: ExpectedContact
+) -> ExpectedContact:
+    """Return the description of a solved contact by its pressure (Pa) and clearance (m).
+
+    What follows from the heights alone is that of ``before``.
+    """
     contact: Mask = pressure > 0
     loaded = pressure[contact]
     total = float(loaded.sum())
-    seen = _FromHeights(before.approach, before.symmetric, before.mirrored, before.window)
     weighted = float(np.sum(loaded**2)) / total
-    return _described(problem, contact, loaded, total / loaded.size, weighted, seen)
-
-
-class _FromHeights(NamedTuple):
-    """What does not depend on the contact set."""
-
-    approach: float
-    symmetric: bool
-    mirrored: bool
-    window: tuple[int, int]
+    return replace(before, **_described(problem, contact, loaded, clearance, total / loaded.size, weighted))
 
 
 def _described(
-    problem: Problem, contact: Mask, loads: Array, mean_pressure: float, pressure: float, seen: _FromHeights
-) -> ExpectedContact:
-    """``loads`` weighs the elements in contact, in their order. Sums are not BLAS's: bits vary there."""
+    problem: Problem, contact: Mask, loads: Array, clearance: Array, mean_pressure: float, pressure: float
+) -> dict[str, Any]:
+    """Return what depends on the contact set; ``loads`` weighs its elements, in their order.
+
+    Sums are not BLAS's: bits vary there.
+    """
     window = problem.grid.window_around(contact, margin=1)
     near, where = problem.windowed(window), contact[window.slices]
     lower, upper = near.heights
     weights = loads / loads.sum()
     share = problem.pair.upper_share
-    slopes = [_on(where, near, z) for z in (lower, upper)]
-    along, across = (share * below + (1 - share) * above for below, above in zip(*slopes, strict=True))
-    tangents = [tan for tan, _ in slopes]
-    elements = loads.size
-    return ExpectedContact(
-        elements=elements,
-        patches=_patches(where, problem.grid.periodic),
-        mean_pressure=mean_pressure,
-        pressure=pressure,
-        slope_squared=float(np.sum(weights * (along**2 + across**2))),
-        least_slope=min(math.sqrt(float(np.sum(weights * tan**2))) for tan in tangents),
-        least_mean_slope=min(abs(float(np.sum(weights * tan))) for tan in tangents),
-        border=problem.grid.on_border(contact) / elements,
-        extent=math.prod(window.shape) / problem.grid.elements,
-        **seen._asdict(),
-    )
+    tangents = [_on(where, near, z)[0] for z in (lower, upper)]
+    common = share * lower + (1 - share) * upper + (share - 0.5) * clearance[window.slices]
+    along, across = _on(where, near, common)
+    return {
+        "elements": loads.size,
+        "patches": _patches(where, problem.grid.periodic),
+        "mean_pressure": mean_pressure,
+        "pressure": pressure,
+        "slope_squared": float(np.sum(weights * (along**2 + across**2))),
+        "least_slope": min(math.sqrt(float(np.sum(weights * tan**2))) for tan in tangents),
+        "least_mean_slope": min(abs(float(np.sum(weights * tan))) for tan in tangents),
+        "border": problem.grid.on_border(contact) / loads.size,
+        "extent": math.prod(window.shape) / problem.grid.elements,
+    }
 
 
 def _on(where: Mask, problem: Problem, heights: Array) -> tuple[Array, Array]:
-    """Slopes along and across the sliding direction on the marked elements."""
+    """Return the slopes along and across the sliding direction on the marked elements."""
     slopes = _slopes(problem, heights)
     return slopes.tan_x[where], slopes.tan_y[where]
 
 
 def _symmetries(coarse: Problem, problem: Problem) -> tuple[bool, bool]:
-    """Whether both surfaces are their own images after half a turn, and across the sliding line.
+    """Return whether both surfaces are their own images after half a turn, and across the sliding line.
 
     So they are if gap and mean surface are; the coarse heights rule most scenes out before all heights are
     compared.
@@ -202,20 +205,21 @@ def _slopes(problem: Problem, heights: Array) -> Slopes:
 
 
 def _patches(contact: Mask, periodic: bool) -> float:
-    """Number of patches of equal size with the same weight: ``(sum n)^2 / sum n^2`` over the patches."""
+    """Return the number of patches of equal size with the same weight: ``(sum n)^2 / sum n^2`` over the
+    patches."""
     sizes = patch_sizes(contact, periodic=periodic).astype(np.float64)
     return float(sizes.sum() ** 2 / np.sum(sizes**2))
 
 
 def _is_image(z: Array, image: Array) -> bool:
-    """Whether a surface is its image, which pairs the first half of its rows with the second."""
+    """Return whether a surface is its image, which pairs the first half of its rows with the second."""
     half = (len(z) + 1) // 2
     apart = float(np.abs(z[:half] - image[:half]).max())
     return apart == 0 or apart <= _ROUNDING * float(np.ptp(z))
 
 
 def _mirrored(direction: float, surfaces: Sequence[Array]) -> bool:
-    """Whether surfaces are mirror images of themselves across the sliding line, a grid axis."""
+    """Return whether surfaces are mirror images of themselves across the sliding line, a grid axis."""
     quarter = direction / (math.pi / 2)
     if abs(quarter - round(quarter)) > _ROUNDING:
         return False

@@ -156,17 +156,18 @@ def effects_in(
     names: tuple[str, ...],
     problem: Problem,
     pressure: Array,
+    clearance: Array,
     before: ExpectedContact,
     elements: int | None = None,
 ) -> dict[str, Effect]:
-    """Return the effect of each named term, estimated again from a solved pressure (Pa).
+    """Return the effect of each named term, estimated again from a solved pressure (Pa) and clearance (m).
 
     With ``elements``, as on a grid of at least so many: on coarse grids terms may change elements that the
     grid of the decision would not change.
     """
     if not names or not pressure.any():
         return {}
-    contact = solved_contact(problem, pressure, before)
+    contact = solved_contact(problem, pressure, clearance, before)
     finer = max(1.0, (elements or 0) / problem.grid.elements)
     contact = replace(contact, elements=round(finer * contact.elements))
     scales = Scales(contact, problem.pair, problem.friction)

@@ -31,6 +31,7 @@ from refimpl.surfaces.shapes import Sphere
 _ASKED_OF_SURFACES = {"side": "side", "periodic": "periodic", "offset": "sliding_offset"}
 MAX_RATIO = 1000.0  # ratio of the domain's lengths, and of an element's edges; larger: an error
 _FAVOURED = 16  # a divisor of all sizes in `refimpl.accuracy.refinement`
+_OF_FORMULAS, _OF_A_MAP = 256, 512  # elements along the longer side by default; of a map's points at most
 _SLENDER = 4.0  # lengths' ratio from which a refinement's grids are finer along the longer side
 
 
@@ -140,7 +141,7 @@ class Scene:
         return self.size or self._covered()
 
     def _covered(self) -> tuple[float, float]:
-        """The largest rectangle (m) that all measured surfaces cover at the scene's offset."""
+        """Return the largest rectangle (m) that all measured surfaces cover at the scene's offset."""
         found = []
         for name, offset in (("lower", self._offset), ("upper", (0.0, 0.0))):
             for k, part in enumerate(self.parts(name)):
@@ -187,6 +188,19 @@ class Scene:
         fewer = math.floor(exact)
         other = max(1, fewer + (exact**2 > fewer * (fewer + 1)))  # nearer neighbour by ratio
         return (longest, other) if Lx == high else (other, longest)
+
+    @property
+    def pitch(self) -> float | None:
+        """Smallest distance of neighbouring points of measured surfaces and arrays (m); None without any."""
+        parts = (*self.parts("lower"), *self.parts("upper"))
+        found = [pitch for part in parts if (pitch := part.pitch(self.lengths)) is not None]
+        return min(found, default=None)
+
+    @property
+    def default_grid(self) -> int:
+        """Elements along the longer side by default: a point of the finest map each, up to 512; else 256."""
+        pitch = self.pitch
+        return _OF_FORMULAS if pitch is None else max(1, min(_OF_A_MAP, round(max(self.lengths) / pitch)))
 
     @property
     def slenderness(self) -> int:
@@ -266,7 +280,8 @@ class Scene:
         return _centred("lower", lower, grid), _centred("upper", upper, grid)
 
     def _summed(self, name: str, grid: Grid, offset: tuple[float, float]) -> Array:
-        """The sum of a body's parts (m); a refusal names the part, or the field of the scene that is why."""
+        """Return the sum of a body's parts (m); a refusal names the part, or the field of the scene that is
+        why."""
         z = grid.zeros
         for k, part in enumerate(self.parts(name)):
             try:
@@ -283,7 +298,7 @@ class Scene:
 
 
 def _two(field: str, value: Any, allowed: str) -> tuple[Any, Any]:
-    """A pair of numbers from a sequence of two."""
+    """Return a pair of numbers from a sequence of two."""
     if not isinstance(value, list | tuple) or len(value) != 2:
         raise InputError(field, value, allowed)
     first, second = (float(item) if isinstance(item, np.floating) else item for item in value)
@@ -291,7 +306,7 @@ def _two(field: str, value: Any, allowed: str) -> tuple[Any, Any]:
 
 
 def _centred(name: str, heights: Array, grid: Grid) -> Array:
-    """The heights about their mid-height, in place."""
+    """Return the heights about their mid-height, in place."""
     if not np.all(np.isfinite(heights)):
         raise InputError(f"{name}.surface", "NaN or infinite heights", "finite heights in m")
     low, high = float(heights.min()), float(heights.max())

@@ -80,7 +80,7 @@ class SurfaceVerdict:
         return found
 
 
-def surface_verdict(scene: Scene, grid: int | tuple[int, int]) -> SurfaceVerdict:
+def surface_verdict(scene: Scene, grid: int | tuple[int, int] | None = None) -> SurfaceVerdict:
     """Solve a scene three times and judge the half-space on its surfaces.
 
     Raises `InputError` for what `solve` refuses, `NotConverged` where a solve does not converge.
@@ -125,7 +125,7 @@ def pressed_on_a_flat(
     surface: Any,
     material: Material,
     *,
-    grid: int = 128,
+    grid: int | None = None,
     pressure: float | None = None,
     friction: Friction | None = None,
 ) -> Scene:
@@ -135,7 +135,7 @@ def pressed_on_a_flat(
     ----------
     surface : a `Surface` that covers an area by itself, such as a `MeasuredSurface`
     material : of its body, elastic
-    grid : elements along the longer side, for the slopes
+    grid : elements along the longer side, for the slopes; as in `solve` by default
     pressure : nominal pressure over the area (Pa); by default a twentieth of ``E* Sdq``, which brings about a
         tenth of the area into contact
     friction : none by default
@@ -149,7 +149,7 @@ def pressed_on_a_flat(
     friction = friction or Friction()
     probe = Scene(upper, lower, friction, load=1.0)
     if pressure is None:
-        problem = discretise(probe, probe.grid(grid))
+        problem = discretise(probe, probe.grid(grid or probe.default_grid))
         along_x, along_y = problem.grid.gradient(problem.heights[0])
         gradient = math.sqrt(float(np.mean(along_x**2 + along_y**2)))
         pressure = LIGHT * material.E / (1 - material.nu**2) * gradient

@@ -51,9 +51,7 @@ def data_error(scene: Scene, grid: Grid) -> float:
 
 def finest_by_data(scene: Scene) -> float:
     """Return the elements along the longer side at four a pitch; infinite without measured parts."""
-    parts = [part for name in ("lower", "upper") for part in scene.parts(name)]
-    pitches = [pitch for part in parts if (pitch := part.pitch(scene.lengths)) is not None]
-    return MOST_ELEMENTS * max(scene.lengths) / min(pitches) if pitches else math.inf
+    return math.inf if scene.pitch is None else MOST_ELEMENTS * max(scene.lengths) / scene.pitch
 
 
 def unseen_share(z: Array, periodic: bool = False) -> float:
@@ -73,7 +71,8 @@ def unseen_share(z: Array, periodic: bool = False) -> float:
 
 
 def _interpolation_loss(z: Array, periodic: bool) -> float:
-    """Mean square gradient of what cubics through every second point miss, over that of all points."""
+    """Return the mean square gradient of what cubics through every second point miss, over that of all
+    points."""
     missed = total = 0.0
     for values in (z, z.T):
         if len(values) < _LEAST_POINTS:
@@ -96,7 +95,7 @@ def _mean_square(values: Array) -> float:
 
 
 def _squared_gradient(z: Array, spacings: tuple[float, float], periodic: bool) -> float:
-    """Mean square of neighbouring points' differences over their distance, both axes."""
+    """Return the mean square of neighbouring points' differences over their distance, both axes."""
     total = 0.0
     for values, spacing in zip((z, z.T), spacings, strict=True):
         around = np.concatenate([values, values[: int(periodic)]])

@@ -81,7 +81,8 @@ class Evidence:
     @cached_property
     def neglected(self) -> dict[str, Effect]:
         """Effects of the neglected terms, from the solved contact."""
-        return effects_in(self.plan.neglected, self.problem, self.state.pressure, self.plan.contact)
+        plan, state = self.plan, self.state
+        return effects_in(plan.neglected, self.problem, state.pressure, state.clearance, plan.contact)
 
     @cached_property
     def features(self) -> GridFeatures:

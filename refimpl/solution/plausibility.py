@@ -26,7 +26,8 @@ _LENGTHS = ("correlation_length", "short_cut")  # roughness of longer ones is a 
 
 
 def notes(solved: Evidence) -> tuple[Notice, ...]:
-    """Notes of implausible inputs and of surfaces; unresolved roughness has a named warning of its own."""
+    """Return the notes of implausible inputs and of surfaces; unresolved roughness has a named warning of its
+    own."""
     scene, grid = solved.scene, solved.problem.grid
     parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
     lines = (*implausible(scene, solved.plan), *scene.notes(grid))
@@ -44,7 +45,8 @@ def implausible(scene: Scene, plan: Plan) -> Iterator[str]:
     if mean > 0 and scene.friction.jump > _STRONG * mean:
         yield (
             f"tau, {scene.friction.jump:.4g} Pa, is {scene.friction.jump / mean:.3g} times the mean contact "
-            "pressure to be expected: did you mean MPa (15 MPa is 15e6)?"
+            "pressure to be expected: did you mean MPa (15 MPa is 15e6), and "
+            f"is the load, {scene.load:.4g} N, right?"
         )
     expected = friction_coefficient_at(scene.friction, mean) * mean if mean > 0 else 0.0
     if 0 < scene.friction.jump < _WEAK * expected:
@@ -97,7 +99,7 @@ def _surface(name: str, scene: Scene) -> Iterator[str]:
 
 
 def _index(scene: Scene, plan: Plan) -> Iterator[str]:
-    """The plasticity index of Eq. (12), by the expected contact's slopes of random roughness."""
+    """Yield the plasticity index of Eq. (12), by the expected contact's slopes of random roughness."""
     bodies = (scene.lower.material, scene.upper.material)
     hardness = min((m.hardness for m in bodies if m.hardness is not None), default=None)
     squares = 0.0

@@ -29,7 +29,7 @@ COVERAGE: dict[str, Column] = {
 
 
 def coverage(documents: Mapping[str, Any]) -> str:
-    """Coverage of the reference by error bars of single grids, by class of scene."""
+    """Show the coverage of the reference by error bars of single grids, by class of scene."""
     rows = [
         row for row in documents["coverage_corrected"]["table"] if row["class"] and row["number"] in JUDGED
     ]
@@ -51,7 +51,7 @@ PEERS = {"ASPHER": "aspher", "Tamaas": "tamaas", "ContactMechanics": "ContactMec
 
 
 def costs(benchmarks: Mapping[str, Any]) -> str:
-    """Seconds of this code and ratios of published solvers, newest run of each."""
+    """Show the seconds of this code and ratios of published solvers, newest run of each."""
     rows: list[Row] = []
     for (kind, M), entries in newest_rows(benchmarks["runs"]).items():
         found = {row["code"]: row for row in entries}
@@ -75,12 +75,12 @@ def costs(benchmarks: Mapping[str, Any]) -> str:
 
 
 def _median(row: Mapping[str, Any] | None) -> float | None:
-    """The median of the seconds of a benchmark's row; None for a code that was not timed."""
+    """Return the median of the seconds of a benchmark's row; None for a code that was not timed."""
     return None if row is None or "seconds" not in row else row["seconds"]["median"]
 
 
 def accuracy_costs(costs: Mapping[str, Any]) -> str:
-    """The coarsest grid for each accuracy, by class of scene."""
+    """Show the coarsest grid for each accuracy, by class of scene."""
     labels = {"friction_coefficient": "μ", "contact_area": "A", "max_pressure": "p_max"}
     labels |= {"friction_coefficient_corrected": "μ, corrected", "contact_area_corrected": "A, corrected"}
     demands = sorted({entry["error"] for one in costs["classes"] for entry in one["prices"]}, reverse=True)

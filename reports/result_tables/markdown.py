@@ -22,7 +22,7 @@ def listing(title: str, text: str, records: Iterable[Any], columns: Mapping[str,
 
 
 def section(title: str, text: str, head: Sequence[str], rows: Sequence[Row]) -> str:
-    """A heading, a paragraph, and a table."""
+    """Return a heading, a paragraph, and a table."""
     return "\n\n".join(filter(None, (f"## {title}", text, "\n".join(_table(head, rows)))))
 
 
@@ -34,15 +34,15 @@ def _table(head: Sequence[str], rows: Sequence[Row]) -> Iterator[str]:
 
 
 def number(value: float | None, digits: str = ".2g") -> str:
-    """A number in a table; a dash where there is none."""
+    """Return a number in a table; a dash where there is none."""
     return "-" if value is None else format(value, digits)
 
 
 def link(name: str) -> str:
-    """A link to a result file."""
+    """Return a link to a result file."""
     return f"[{name}.json](results/{name}{SUFFIX})"
 
 
 def origin(case: Case) -> str:
-    """A link to the file that holds the case."""
+    """Return a link to the file that holds the case."""
     return link(RUN if case["origin"] is None else case["origin"]["file"].removesuffix(".json"))

@@ -15,7 +15,7 @@ from reports.text import interval, quoted, symbols, unit_of
 
 
 def table_3(reproduction: Mapping[str, Any]) -> str:
-    """The paper's Table 3, printed and computed."""
+    """Show the paper's Table 3, printed and computed."""
     cases = {case["id"]: case["data"] for case in reproduction["cases"]}
     data = [cases[f"reproduction/table3-{name}-full"] for name in ("mu", "area", "peak")]
     first = data[0]
@@ -39,7 +39,7 @@ def table_3(reproduction: Mapping[str, Any]) -> str:
 
 
 def _scaled(case: Case, key: str) -> str:
-    """Value or reference in the printed unit; nothing for cases without a reference."""
+    """Return the value or reference in the printed unit; nothing for cases without a reference."""
     return "" if case["reference"] is None else f"{unit_of(case)[1] * case[key]:.7g}"
 
 
@@ -56,7 +56,7 @@ HERTZ: dict[str, Column] = {
 
 
 def hertz(run: Mapping[str, Any]) -> str:
-    """The smooth ball against Hertz' solution."""
+    """Show the smooth ball against Hertz' solution."""
     text = (
         "Smooth ball under 70 N without friction. Errors of quantities are relative, errors of orders of "
         "convergence absolute."

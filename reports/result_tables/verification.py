@@ -13,7 +13,7 @@ COUNTED = (*STATUSES[:1], RECORDED, *STATUSES[1:])
 
 
 def checks(documents: Mapping[str, Any], evidence: Evidence) -> str:
-    """Counts of statuses, by result file."""
+    """Show the counts of statuses, by result file."""
     rows: list[Row] = []
     for name, run in documents.items():
         if run.get("format") == FORMAT:
@@ -38,14 +38,14 @@ def _counts(cases: Iterable[Case]) -> list[int]:
 
 
 def studies(documents: Mapping[str, Any]) -> str:
-    """Quality of the verification itself: single numbers of the studies."""
+    """Show the quality of the test suite: single numbers of the studies."""
     rows = list(_searches(documents))
     text = "How far the verification itself can be trusted, and what broad searches found."
     return section("Studies", text, ("study", "result", "file"), rows)
 
 
 def _searches(documents: Mapping[str, Any]) -> Iterator[Row]:
-    """Rows of searches for inputs that are answered wrongly."""
+    """Yield the rows of searches for inputs that are answered wrongly."""
     found = documents["extremes"]["counts"]
     yield (
         "extreme inputs",
@@ -62,7 +62,7 @@ def _searches(documents: Mapping[str, Any]) -> Iterator[Row]:
 
 
 def codes(cross_code: Mapping[str, Any]) -> str:
-    """Solvers through the suite of checks for other solvers."""
+    """Show solvers through the suite of checks for other solvers."""
     roles = {"ours": "this code", "peer": "published solver", "trap": "negative control"}
     rows: list[Row] = [
         (

@@ -8,7 +8,7 @@ from reports.exhibit import Document, Exhibit, Table
 
 
 def build(document: Document) -> Exhibit:
-    """Numbers of examples that every invariant required and passed, by solver."""
+    """Return the numbers of examples that every invariant required and passed, by solver."""
     held: dict[str, dict[str, int]] = defaultdict(dict)
     claims = {}
     for part in document["slices"]:

@@ -15,6 +15,7 @@ from appendix_a.leading_order import coupling, first_order
 from tests.appendix_a.made_up import invented
 
 
+@pytest.mark.nightly
 def test_a_computed_entry_is_the_solve_it_came_from():
     table = compute((10.0,), (32.0,), (0.125,), workers=1)
     direct = departures(10.0, 32.0, 0.125, OFFSETS, (0, 1, 2))

@@ -83,6 +83,7 @@ def test_fields_on_disk_are_those_of_the_solve(tmp_path):
     assert stored.cell_data["sigma_yy"][0][middle] == pytest.approx(-1.0, abs=0.05)
 
 
+@pytest.mark.nightly
 def test_waves_mirrored_and_shifted_are_the_same_waves():
     def wavy(position, offsets):
         return departures(20.0, 10.0, position, offsets, levels=(0, 0, 0)).result(0.3).wavy
@@ -115,9 +116,13 @@ def test_wedge_tip_is_symmetric_and_of_first_order_where_the_formula_says():
     assert found.discretisation_error < 1e-4 * np.abs(found.flat).min()
 
 
-def test_flat_boundary_and_stated_error():
+def test_waves_of_no_slope_are_the_flat_boundary():
     still = departures(0.0, 50.0, 0.3, NEIGHBOURS, levels=(0, 0, 0)).result(0.3)
     assert np.all(still.wavy == still.flat)
+
+
+@pytest.mark.nightly
+def test_the_stated_error_of_a_steep_wave_is_small():
     steep = sinusoid(30.0, 8.0, 0.1, 0.4999, offsets=NEIGHBOURS[2:-2])
     assert np.nanmax(steep.percentage_points) < 0.02
     assert steep.discretisation_error > 0.0

@@ -23,7 +23,8 @@ _ITERATIONS = 5000
 
 
 def press(problem: ContactProblem, **options: str) -> PublishedAnswer:
-    """Pressures of ``solve_nested`` with its ``options``, or of ``ContactSolver`` where M is not 64 2^k.
+    """Return the pressures of ``solve_nested`` with its ``options``, or of ``ContactSolver`` where M is not
+    64 2^k.
 
     Its Frank-Wolfe error is the mean gap under the pressure over the range of the gap, and over one unit of
     length where the gap is flat: the unit is ``P / (E* side)``, about the approach, to give that a meaning.
@@ -50,7 +51,7 @@ def press(problem: ContactProblem, **options: str) -> PublishedAnswer:
 
 
 def _halves(M: int) -> bool:
-    """Whether M is 64 times a power of two."""
+    """Return whether M is 64 times a power of two."""
     levels, rest = divmod(M, _COARSEST)
     return rest == 0 and levels > 0 and levels & (levels - 1) == 0
 

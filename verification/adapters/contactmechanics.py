@@ -26,7 +26,7 @@ _ITERATIONS = 5000
 
 
 def press(problem: ContactProblem, *, mean_stiffness: float | None = None) -> PublishedAnswer:
-    """Pressures on the periodic or free half-space, under a load or at an offset.
+    """Return the pressures on the periodic or free half-space, under a load or at an offset.
 
     ``mean_stiffness`` is ``stiffness_q0`` under a load; zero gives the negative control.
     """
@@ -68,7 +68,8 @@ def _half_space(package: ModuleType, problem: ContactProblem, mean_stiffness: fl
 
 
 def _tolerances(problem: ContactProblem) -> dict[str, float]:
-    """Absolute ones in m and N: the defaults are not meant for SI units, nor for a relative gap of 1e-8.
+    """Return the absolute ones in m and N: the defaults are not meant for SI units, nor for a relative gap of
+    1e-8.
 
     Penetrations up to ``pentol`` under the pressure make at most twice that of mean gap.
     """

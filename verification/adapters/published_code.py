@@ -72,7 +72,7 @@ class PublishedCode:
         return identity.of_distribution(self.distribution)
 
     def __call__(self, problem: ContactProblem) -> PublishedAnswer:
-        """The peer's answer.
+        """Return the peer's answer.
 
         Raises `Unavailable` where the peer is not installed and `Unsupported` where it cannot pose the
         problem.
@@ -86,7 +86,8 @@ class PublishedCode:
 
 
 def closure(problem: ContactProblem) -> float:
-    """Mean gap under the pressure, ``sum f (v - min v) / sum f``, at which the tolerance is met (m).
+    """Return the mean gap under the pressure, ``sum f (v - min v) / sum f``, at which the tolerance is met
+    (m).
 
     The relative gap is that over half the mean displacement under the pressure, ``depth``. No contact of load
     P in a domain has a smaller one than the square punch that contains it, 0.87 P / (E* max(Lx, Ly)); at an
@@ -107,7 +108,8 @@ def closure(problem: ContactProblem) -> float:
 
 
 def _flattening(problem: ContactProblem) -> float:
-    """Elastic energy (J) of a periodic surface in full contact: pressures ``E* q/2`` times its waves."""
+    """Return the elastic energy (J) of a periodic surface in full contact: pressures ``E* q/2`` times its
+    waves."""
     x, y = (2 * np.pi * np.fft.fftfreq(n, d) for n, d in zip(problem.shape, problem.spacings, strict=True))
     wave = np.hypot(x[:, None], y)
     pressure = np.fft.ifft2(np.fft.fft2(problem.gap) * wave * (0.5 * problem.reduced_modulus)).real
@@ -115,5 +117,5 @@ def _flattening(problem: ContactProblem) -> float:
 
 
 def imported(name: str) -> ModuleType:
-    """A peer's module, as an untyped one: none of the peers ships type hints."""
+    """Return a peer's module, as an untyped one: none of the peers ships type hints."""
     return importlib.import_module(name)

@@ -33,7 +33,7 @@ ABILITIES = Abilities(approach=False, rectangle=True)
 
 @cache
 def version_of(interpreter: str) -> str | None:
-    """Version of SlipPY that an interpreter has, or None."""
+    """Return the version of SlipPY that an interpreter has, or None."""
     ask = "from importlib.metadata import version; print(version('slippy'))"
     try:
         done = subprocess.run(
@@ -56,7 +56,8 @@ class Elsewhere(PublishedCode):
 
 
 def press(problem: ContactProblem, *, option: str = "") -> PublishedAnswer:
-    """Pressures of the program; ``option`` is ``--frequency`` for SlipPY's default in free space."""
+    """Return the pressures of the program; ``option`` is ``--frequency`` for SlipPY's default in free
+    space."""
     words = [os.environ[INTERPRETER], str(PROGRAM), *shlex.split(option)]
     answer = Command(tuple(words), ABILITIES, SECONDS)(problem)
     return PublishedAnswer(answer.pressure, answer.converged)

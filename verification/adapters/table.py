@@ -63,7 +63,7 @@ class Watched:
         return abilities_of(self.solver)
 
     def __call__(self, problem: ContactProblem) -> Answer:
-        """The solver's answer, unchanged."""
+        """Return the solver's answer, unchanged."""
         start = time.perf_counter()
         answer = self.solver(problem)
         self.seconds.append(time.perf_counter() - start)
@@ -72,7 +72,8 @@ class Watched:
 
 
 def recomputed(problem: ContactProblem, pressure: Array) -> float:
-    """Worst residual recomputed by the suite; NaN without one (too large, or no elastic energy)."""
+    """Return the worst residual recomputed by the suite; NaN without one (too large, or no elastic
+    energy)."""
     too_large = reference_solution.is_large(problem) and not problem.periodic
     if pressure.shape != problem.gap.shape or too_large or reference_solution.stores_no_energy(problem):
         return float("nan")
@@ -83,7 +84,7 @@ def recomputed(problem: ContactProblem, pressure: Array) -> float:
 
 
 def measured() -> dict[str, object]:
-    """The whole table, ready for JSON."""
+    """Return the whole table, ready for JSON."""
     progress = Progress(len(ENTRANTS))
     entrants = []
     for name, solver in ENTRANTS.items():
@@ -132,7 +133,8 @@ def _entrant(name: str, solver: Solver) -> dict[str, object]:
 
 
 def summarised(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Rows of the cases, and one for each covering design: its worst error, and which problems failed."""
+    """Return the rows of the cases, and one for each covering design: its worst error, and which problems
+    failed."""
     single = [dict(row) for row in rows if _design(row["id"]) is None]
     designs: dict[str, list[Mapping[str, Any]]] = {}
     for row in rows:
@@ -142,7 +144,7 @@ def summarised(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _short(value: Any) -> Any:
-    """Four digits of a number: no report shows more."""
+    """Return the four digits of a number: no report shows more."""
     return float(f"{value:.4g}") if isinstance(value, float) else value
 
 

@@ -30,7 +30,8 @@ _GAP_FORMULATION = 0.3
 
 
 def press(problem: ContactProblem, *, second_step: bool = True) -> PublishedAnswer:
-    """Pressures of the Polonsky-Keer solver. Its error is the mean gap under the pressure over std(heights).
+    """Return the pressures of the Polonsky-Keer solver. Its error is the mean gap under the pressure over
+    std(heights).
 
     Loads are mean pressures. A periodic approach is minus the mean gap, which the same solver takes as
     constraint of its gap formulation. ``second_step=False`` gives the negative control. Raises `Unsupported`
@@ -65,7 +66,7 @@ def press(problem: ContactProblem, *, second_step: bool = True) -> PublishedAnsw
 
 
 def _saturated(problem: ContactProblem, unit: float) -> PublishedAnswer:
-    """Pressures up to the hardness; ``unit`` (Pa) is that of moduli and pressures: E* to be right.
+    """Return the pressures up to the hardness; ``unit`` (Pa) is that of moduli and pressures: E* to be right.
 
     Raises `Unsupported` for an approach: the solver takes loads.
     """

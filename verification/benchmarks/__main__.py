@@ -49,7 +49,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def measured(
     grids: Sequence[int], names: Sequence[str], kinds: Sequence[str], count: int, threads: int, limit: float
 ) -> dict[str, Any]:
-    """One run: tolerances found for each code, then ``count`` rounds; ready for JSON."""
+    """Measure one run: tolerances found for each code, then ``count`` rounds; ready for JSON."""
     before = os.getloadavg()
     rows: list[object] = []
     found: list[dict[str, object]] = []

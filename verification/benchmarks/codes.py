@@ -106,7 +106,7 @@ def alone(friction: rf.Friction, oblique: bool, kind: str, M: int, tolerance: fl
 
 
 def codes() -> dict[str, Code]:
-    """All codes by name; the version is None where a peer is not installed."""
+    """Return all codes by name; the version is None where a peer is not installed."""
     version = f"{OWN} {versions()[DISTRIBUTION]}"
     found = {name: Code(name, version, partial(own, *setting)) for name, setting in SETTINGS.items()}
     found[ALONE] = Code(ALONE, version, partial(alone, *SETTINGS[OWN]))

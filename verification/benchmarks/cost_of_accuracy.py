@@ -130,7 +130,8 @@ def costs(realisations: Sequence[Sequence[Mapping[str, Any]]], key: str = "error
 
 def table(classes: Sequence[Mapping[str, Any]]) -> str:
     """Return the printed table: elements per side and seconds by class, number and demand."""
-    lines = [["scene", "number", "demand", "error met (known afterwards)", "error bar shows it"]]
+    found = ["error met (known afterwards)", "error bar shows it (solve --accuracy)"]
+    lines = [["scene", "number", "demand", *found]]
     for one in classes:
         for met, shown in zip(one["prices"], one["shown"], strict=True):
             lines.append([one["class"], met["quantity"], f"{met['error']:.1%}", _cell(met), _cell(shown)])

@@ -39,7 +39,7 @@ def over(code: str, by: str = OWN) -> Number:
 
 
 def memory(ratios: Ratios, rows: Rows) -> Spread | None:
-    """ASPHER's memory of a solve, as a ratio to this code."""
+    """Return ASPHER's memory of a solve, as a ratio to this code."""
     theirs, ours = (rows[code]["memory of the solve"]["median"] for code in (PEER, OWN))
     return {"median": theirs / ours}
 
@@ -56,7 +56,8 @@ TABLE: dict[str, Number] = {
 def newest(
     runs: Sequence[Mapping[str, Any]], codes: frozenset[str] = EVERY
 ) -> dict[tuple[str, int, int], tuple[Ratios, Rows]]:
-    """Ratios and rows by surface, grid and threads, of the last run in which all of the codes took part."""
+    """Return the ratios and rows by surface, grid and threads, of the last run in which all of the codes took
+    part."""
     found: dict[tuple[str, int, int], tuple[Ratios, Rows]] = {}
     for run in runs:
         if {row["code"] for row in run["rows"]} >= codes:
@@ -68,7 +69,7 @@ def newest(
 
 
 def table(runs: Sequence[Mapping[str, Any]]) -> list[list[str]]:
-    """Rows of the table, each with its label and a cell a grid: smooth / rough."""
+    """Return the rows of the table, each with its label and a cell per grid: smooth / rough."""
     found = newest(runs)
 
     def cell(number: Number, kind: str, M: int) -> str:
@@ -81,7 +82,7 @@ def table(runs: Sequence[Mapping[str, Any]]) -> list[list[str]]:
 
 
 def shown(numbers: Iterable[Spread | None]) -> str:
-    """The range of numbers with their spreads, on any number of threads.
+    """Return the range of numbers with their spreads, on any number of threads.
 
     >>> shown([{"median": 3.1, "least": 2.96, "most": 3.4}, {"median": 12.2}]), shown([None])
     ('3.0-12', '-')
@@ -94,7 +95,7 @@ def shown(numbers: Iterable[Spread | None]) -> str:
 
 
 def lines(runs: Sequence[Mapping[str, Any]]) -> list[str]:
-    """The table in Markdown, and one line for each run of the record: where and how it was made."""
+    """Return the table in Markdown, and one line for each run of the record: where and how it was made."""
     text = [f"| | {' | '.join(map(str, GRIDS))} |", "|---" * (1 + len(GRIDS)) + "|"]
     text += [f"| {' | '.join(row)} |" for row in table(runs)]
     for run in runs:

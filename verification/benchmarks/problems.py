@@ -22,13 +22,13 @@ FLATS: dict[str, rf.Surface] = {
 
 @cache
 def heights(kind: str, M: int) -> tuple[Array, Array]:
-    """Heights of flat and paraboloid at the element centres, each ``(M, M)`` (m)."""
+    """Return the heights of flat and paraboloid at the element centres, each ``(M, M)`` (m)."""
     grid = Grid.square(SIDE, M)
     return FLATS[kind].heights(grid), SPHERE.heights(grid)
 
 
 def problem(kind: str, M: int, tolerance: float) -> ContactProblem:
-    """The frictionless problem, as every code gets it."""
+    """Return the frictionless problem, as every code gets it."""
     lower, upper = heights(kind, M)
     gap = upper - lower
     modulus = Pair(lower=COPPER, upper=STEEL).reduced_modulus

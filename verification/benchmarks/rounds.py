@@ -57,12 +57,14 @@ class Turns:
 
 
 def error(found: Mapping[str, Any]) -> float:
-    """Residual for the target: the recomputed gap, or with coupling the certificate's worst residual."""
+    """Return the residual for the target: the recomputed gap, or with coupling the certificate's worst
+    residual."""
     return float(found["gap"] if found["residual"] is None else found["residual"])
 
 
 def tuned_turns(name: str, kind: str, M: int, last: Turns | None, threads: int, limit: float) -> Turns:
-    """The code with a tolerance of its own that meets the target; or why it takes no part on this grid.
+    """Return the code with a tolerance of its own that meets the target; or why it takes no part on this
+    grid.
 
     ``last`` are its turns on the next coarser grid: a peer's search goes on from their tolerance.
     """
@@ -86,7 +88,7 @@ def tuned_turns(name: str, kind: str, M: int, last: Turns | None, threads: int, 
 
 
 def tuned(solve: Callable[[float], Found], start: float, *, loosen: bool) -> tuple[float, Found]:
-    """The loosest tolerance, within a factor of two, whose error meets the target, and what it found.
+    """Return the loosest tolerance, within a factor of two, whose error meets the target, and what it found.
 
     Without ``loosen`` the start is the loosest allowed. Raises `Failed` when no tolerance tried will do.
 

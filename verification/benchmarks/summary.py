@@ -17,7 +17,7 @@ JUDGED = ("gap", "balance", "penetration", "tension", "area", "peak", "converged
 
 
 def spread(values: Iterable[float]) -> dict[str, float]:
-    """Median, least and largest.
+    """Return the median, least and largest.
 
     >>> spread([3.0, 1.0, 2.0])
     {'median': 2.0, 'least': 1.0, 'most': 3.0}
@@ -27,7 +27,7 @@ def spread(values: Iterable[float]) -> dict[str, float]:
 
 
 def row(turns: Turns) -> dict[str, object]:
-    """One code on one problem."""
+    """Time one code on one problem."""
     head: dict[str, object] = {
         name: getattr(turns, name) for name in ("code", "kind", "M", "tolerance", "failure")
     }
@@ -48,7 +48,8 @@ def row(turns: Turns) -> dict[str, object]:
 
 
 def ratios(turns: Sequence[Turns]) -> dict[str, object]:
-    """Ratio of every code's seconds to this code's on one problem, by rounds; and the least of the peers'.
+    """Return the ratio of every code's seconds to this code's on one problem, by rounds; and the least of the
+    peers'.
 
     The least by the recommended set-ups, by any, over the solver alone, and over it in a process that has
     solved the same before. Processor seconds beside: they hear less of what else the machine does. Under
@@ -77,14 +78,14 @@ def _over(theirs: Sequence[Found], ours: Sequence[Found], clock: str) -> dict[st
 
 
 def _timed(clock: str, theirs: Sequence[Found], ours: Sequence[Found]) -> bool:
-    """True where both have a time by that clock in every round."""
+    """Return True where both have a time by that clock in every round."""
     return bool(ours) and all(one[clock] is not None for one in (*theirs, *ours))
 
 
 def _fastest(
     name: str, peers: Mapping[str, Sequence[Found]], ours: Sequence[Found], clock: str
 ) -> dict[str, object]:
-    """The peer of the least median ratio, if any was timed by that clock."""
+    """Return the peer of the least median ratio, if any was timed by that clock."""
     timed = {code: rounds for code, rounds in peers.items() if _timed(clock, rounds, ours)}
     if not timed:
         return {}
@@ -94,7 +95,8 @@ def _fastest(
 
 
 def lines(rows: Sequence[Any], ratios: Sequence[Any]) -> list[list[str]]:
-    """The run as rows of text: problem, code, seconds, ratio to this code, gap, convolutions, megabytes."""
+    """Return the run as rows of text: problem, code, seconds, ratio to this code, gap, convolutions,
+    megabytes."""
     over = {(r["kind"], r["M"], code): r[code] for r in ratios for code in r if isinstance(r[code], dict)}
     text = [["problem", "code", "seconds", "ratio to this code", "gap", "convolutions", "peak memory"]]
     for entry in rows:

@@ -85,7 +85,7 @@ class _Version(argparse.Action):
 
 
 def parser() -> argparse.ArgumentParser:
-    """The whole command line."""
+    """Return the whole command line."""
     top: argparse.ArgumentParser = Parser(
         prog="rough-friction",
         description="Friction between rough elastic surfaces: solve scenes, verify the solvers, report.",
@@ -105,7 +105,8 @@ def parser() -> argparse.ArgumentParser:
 
 
 def joined(arguments: Sequence[str]) -> list[str]:
-    """Arguments with negative numbers, and lists that begin with one, joined to the option before them.
+    """Return the arguments with negative numbers, and lists that begin with one, joined to the option before
+    them.
 
     By itself, argparse (Python 3.11) takes "-1e-6" and "-3,3" for options, and misses a value.
 
@@ -156,7 +157,7 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 
 def _end_in_order() -> None:
-    """Interrupts raise, so that no temporary file stays; no text fails on standard output's encoding."""
+    """Make interrupts raise, so that no temporary file stays; no text fails on standard output's encoding."""
     started = threading.current_thread() is threading.main_thread()
     if started and signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # by `verification.start`
         signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -101,7 +101,7 @@ def _epilog(*names: str) -> str:
 
 
 def strip(options: argparse.Namespace) -> int:
-    """Displacements of a wavy boundary, correct to first order in its slope, and of a flat one."""
+    """Print the displacements of a wavy boundary, correct to first order in its slope, and of a flat one."""
     from appendix_a.strip import first_order
 
     with _by_option():
@@ -116,7 +116,7 @@ def strip(options: argparse.Namespace) -> int:
 
 
 def fem(options: argparse.Namespace) -> int:
-    """Displacements of a wavy boundary and of a flat one."""
+    """Print the displacements of a wavy boundary and of a flat one."""
     from appendix_a.fem.sinusoid import SOLVES, fem_json, sinusoid
 
     with _by_option(), _progress(SOLVES, "finite elements") as tick:
@@ -128,7 +128,7 @@ def fem(options: argparse.Namespace) -> int:
 
 
 def coefficient_map(options: argparse.Namespace) -> int:
-    """The versioned table of the error of flat coefficients, every Poisson ratio in it."""
+    """Write the versioned table of the error of flat coefficients, every Poisson ratio in it."""
     from appendix_a.fem.coefficient_map import check_complete
     from appendix_a.fem.map2d import POSITIONS, SLOPES_DEG, WAVELENGTHS, compute
 
@@ -172,7 +172,8 @@ def _displacements(document: Mapping[str, Any], remark: str) -> str:
 
 
 def wedge(options: argparse.Namespace) -> int:
-    """Stresses at every pair of `--r` and `--theta-deg`, in units of the face pressure, tension positive."""
+    """Print the stresses at every pair of `--r` and `--theta-deg`, in units of the face pressure, tension
+    positive."""
     import numpy as np
 
     from appendix_a.wedge import stresses
@@ -191,7 +192,7 @@ def wedge(options: argparse.Namespace) -> int:
 
 
 def _refuse_angles(options: argparse.Namespace) -> None:
-    """In degrees, as they were typed, what `appendix_a.wedge` would refuse in radians."""
+    """Refuse in degrees, as typed, what `appendix_a.wedge` would refuse in radians."""
     if not 0 <= options.gamma_deg < 90:
         raise refusal("--gamma-deg", options.gamma_deg, "a slope angle of 0 to below 90 degrees")
     face = 90 - options.gamma_deg
@@ -213,7 +214,8 @@ def _progress(total: int, text: str) -> Iterator[Callable[..., None]]:
 
 @contextmanager
 def _by_option(**other: tuple[str, object, str]) -> Iterator[None]:
-    """Refusals of `appendix_a` name the option; ``other`` has name, value and what is allowed by field."""
+    """Make refusals of `appendix_a` name the option; ``other`` has name, value and what is allowed by
+    field."""
     from appendix_a.errors import InputError
 
     try:

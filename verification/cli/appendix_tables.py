@@ -36,7 +36,7 @@ PAIR: tuple[str, str, Options] = (
 
 @cache
 def shipped_map() -> CoefficientMap:
-    """The plane map that comes with the solver."""
+    """Return the plane map that comes with the solver."""
     from appendix_a.fem.coefficient_map import CoefficientMap
 
     with as_file(files("refimpl") / "data" / "coefficient_error.json") as path:
@@ -44,7 +44,7 @@ def shipped_map() -> CoefficientMap:
 
 
 def look_up(options: argparse.Namespace) -> int:
-    """Percent by which the coefficients at the map's offsets are off."""
+    """Print the percentage by which the coefficients at the map's offsets are off."""
     from appendix_a.fem.coefficient_map import interpolation_error
 
     upper = _upper(options)
@@ -71,7 +71,8 @@ def look_up(options: argparse.Namespace) -> int:
 
 
 def element(options: argparse.Namespace) -> int:
-    """Percent by which a square element's coefficients are off, the largest on crest, flank and valley."""
+    """Print the percentage by which a square element's coefficients are off, the largest on crest, flank and
+    valley."""
     from refimpl import Material
     from refimpl.half_space.influence_error_3d import element_error
 

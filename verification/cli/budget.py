@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
 
 def document(budgets: Budgets) -> dict[str, object]:
-    """SI units; half-widths of 95 %; infinity, where a part is unbounded, for the caller to make null."""
+    """Return SI units; half-widths of 95 %; infinity, where a part is unbounded, for the caller to make
+    null."""
     return {
         "tolerances": dict(budgets.tolerances),
         "numbers": {number: _parts(part) for number, part in budgets.numbers.items()},
@@ -26,8 +27,8 @@ def document(budgets: Budgets) -> dict[str, object]:
 
 
 def table(budgets: Budgets) -> str:
-    """Parts of each number in per cent of it, the number with all of them, and per cents that it changes by
-    for one of a parameter."""
+    """Return the parts of each number in per cent of it, the number with all of them, and per cents that it
+    changes by for one of a parameter."""
     header = ["", *(QUANTITIES[number].symbol for number in budgets.numbers)]
     numbers = list(budgets.numbers.values())
     widths: dict[str, list[float | None]] = {
@@ -56,7 +57,7 @@ def table(budgets: Budgets) -> str:
 
 
 def _in_words(budgets: Budgets) -> str:
-    """Each number with its total in its unit, what that leaves out, and what it does not know."""
+    """Return each number with its total in its unit, what that leaves out, and what it does not know."""
     found = []
     for number, part in budgets.numbers.items():
         quantity = QUANTITIES[number]
@@ -74,8 +75,8 @@ def _in_words(budgets: Budgets) -> str:
 
 
 def _undetermined(budgets: Budgets) -> list[str]:
-    """Parameters with a tolerance whose derivative's bar is as long as itself, and would count in the input
-    part of mu."""
+    """Return the parameters with a tolerance whose derivative's bar is as long as itself, and would count in
+    the input part of mu."""
     number = "friction_coefficient_corrected"
     derivative, scatter = budgets.derivatives.derivatives[number], budgets.derivatives.scatter[number]
     least = 0.1 * budgets.numbers[number].input
@@ -101,14 +102,14 @@ def _parts(part: Budget) -> dict[str, object]:
 
 
 def _share(part: Budget, width: float | None) -> str:
-    """A half-width in per cent of the number; "-" for none stated or a number of zero."""
+    """Return a half-width in per cent of the number; "-" for none stated or a number of zero."""
     if width is None or part.value == 0:
         return "-"
     return f"{100 * width / abs(part.value):.2g}" if math.isfinite(width) else "unbounded"
 
 
 def _relative(budgets: Budgets, number: str, name: str) -> str:
-    """With its 95 % half-width where that is a tenth of it or more."""
+    """Print the change with its 95 % half-width where that is a tenth of it or more."""
     found, answers = budgets.derivatives.found[number], budgets.derivatives
     if found == 0:
         return "-"

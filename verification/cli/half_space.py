@@ -7,8 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.grids import DEFAULT_TEXT, default_grid, own_points
-from verification.cli.options import Options, option, output_file
+from verification.cli.options import DEFAULT_GRID, Options, option, output_file
 from verification.cli.output import PICTURES, check_outputs, check_suffix, emit, files_of, refusal
 from verification.output.text_table import columns, wrapped
 
@@ -20,7 +19,7 @@ ALONE = {"E": 200e9, "nu": 0.3, "tau": 0.0, "beta": 0.1}  # assumed for a surfac
 
 OPTIONS: Options = {
     "scene": option("a scene (.toml, or a shipped one's name), or a surface's file", metavar="SCENE|FILE"),
-    "--grid": option(f"elements along the longer side ({DEFAULT_TEXT})", type=int),
+    "--grid": option(f"elements along the longer side ({DEFAULT_GRID})", type=int),
     "--plot": option("map of the local coefficient error, .png or .svg", metavar="FILE", type=output_file),
 }
 SURFACE_FILE: tuple[str, str, Options] = (
@@ -46,7 +45,7 @@ def surface(options: argparse.Namespace) -> int:
     check_suffix("--plot", options.plot, PICTURES)
     scene, note = _posed(options)
     check_outputs([Path(options.scene), *files_of(scene)], plot=options.plot, json=options.json)
-    verdict = surface_verdict(scene, options.grid or default_grid(scene))
+    verdict = surface_verdict(scene, options.grid)
     if options.plot is not None:
         from verification.cli.plot_surface import draw_local_error
 
@@ -56,7 +55,7 @@ def surface(options: argparse.Namespace) -> int:
 
 
 def _posed(options: argparse.Namespace) -> tuple[Scene, str]:
-    """The scene, and what was assumed where a surface's file is all there is."""
+    """Return the scene, and what was assumed where a surface's file is all there is."""
     import refimpl
     from refimpl.sensitivities.surface_verdict import pressed_on_a_flat
 
@@ -77,7 +76,7 @@ def _posed(options: argparse.Namespace) -> tuple[Scene, str]:
     scene = pressed_on_a_flat(
         measured,
         refimpl.Material(taken["E"], taken["nu"]),
-        grid=options.grid or own_points([measured], measured.extent((0.0, 0.0))),
+        grid=options.grid,
         pressure=given.get("pressure"),
         friction=refimpl.Friction(taken["tau"], taken["beta"]),
     )

@@ -7,8 +7,8 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.grids import DEFAULT_TEXT, default_grid
 from verification.cli.options import (
+    DEFAULT_GRID,
     SCENE,
     Options,
     loads,
@@ -38,7 +38,7 @@ load is not used, its [tolerances] add to the uncertainty. With --store a stoppe
 OPTIONS: Options = {
     "scene": SCENE,
     "data": option("the measured friction", metavar="DATA.csv", type=Path),
-    "--grid": option(f"elements along the longer side ({DEFAULT_TEXT})", metavar="M", type=int),
+    "--grid": option(f"elements along the longer side ({DEFAULT_GRID})", metavar="M", type=int),
     "--loads": option("loads (N) at which mu is predicted", metavar="P,P,...", type=loads, default=()),
     "--fit": option("fit the hardness as well", metavar="NAME,...", type=names, default=()),
     "--realisations": option("draws of random surfaces (default 1)", metavar="N", type=int, default=1),
@@ -64,7 +64,7 @@ def run(options: argparse.Namespace) -> int:
         found = identify(
             scene,
             rows,
-            options.grid or default_grid(scene),
+            options.grid,
             loads=options.loads,
             fit=options.fit,
             tolerances=tolerances,
@@ -82,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def document(found: Identification) -> dict[str, object]:
-    """SI units; intervals of 95 %, shares as standard uncertainties; None for what is unbounded."""
+    """Return SI units; intervals of 95 %, shares as standard uncertainties; None for what is unbounded."""
     proposal = found.proposal
     return {
         "tau": _interval(found.values["tau"]),
@@ -149,13 +149,13 @@ def _scaled(name: str) -> tuple[str, float]:
 
 
 def _cells(interval: Interval, unit: float = 1.0) -> list[str]:
-    """Value and ends of an interval in a unit."""
+    """Return the value and ends of an interval in a unit."""
     value, low, high = (f"{end / unit:.4g}" for end in (interval.value, interval.low, interval.high))
     return [value, f"{low} to {high}"]
 
 
 def table(found: Identification) -> str:
-    """Values, parts of their uncertainty, rows, laws and warnings."""
+    """Return the values, parts of their uncertainty, rows, laws and warnings."""
     scales = {name: _scaled(name) for name in found.values}
     values = [["", "value", "95 % interval"]]
     values += [[label, *_cells(found.values[name], unit)] for name, (label, unit) in scales.items()]

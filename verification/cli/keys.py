@@ -70,7 +70,7 @@ def _row(cells: list[str]) -> str:
 
 
 def also_in(name: str) -> dict[str, str]:
-    """Return, by key of a table of a scene, whether a study may vary it and whether it has a tolerance.
+    """Return by key of a table of a scene, whether a study may vary it and whether it has a tolerance.
 
     >>> also_in("friction")["tau"], also_in("sphere")["radius"], also_in("gaussian")["seed"]
     ('vary, tolerances', 'vary, tolerances', 'vary')
@@ -101,7 +101,7 @@ def _tables() -> Tables:
 
 
 def _table(found: Mapping[str, list[Key]]) -> str:
-    """The keys for a terminal, without the meanings' marks of code."""
+    """Return the keys for a terminal, without the meanings' marks of code."""
     parts = []
     for title, keys in found.items():
         if keys:

@@ -22,6 +22,7 @@ from verification.output.files import try_out
 Parsers: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"
 Options: TypeAlias = dict[str, Mapping[str, Any]]
 """Keywords of `argparse.ArgumentParser.add_argument` by an option's name."""
+DEFAULT_GRID = "default 256; of a measured map its own points, up to 512"  # `refimpl.Scene.default_grid`
 Value = TypeVar("Value")
 
 
@@ -53,7 +54,7 @@ def option(help: str, **keywords: Any) -> Mapping[str, Any]:
 
 
 def output_file(text: str) -> Path:
-    """A file to write: refused at once where it could not be written in the end."""
+    """Parse the name of a file to write, and refuse it where it could not be written in the end."""
     path = Path(text)
     if not text:  # it would be the working directory
         raise argparse.ArgumentTypeError("expected a file's name, not ''")
@@ -73,14 +74,14 @@ def output_file(text: str) -> Path:
 
 
 def output_text(text: str) -> Path:
-    """A text to write: a file, or '-' for standard output."""
+    """Parse the name of a text to write: a file, or '-' for standard output."""
     if not text:
         raise argparse.ArgumentTypeError("expected a file's name, or '-' for standard output, not ''")
     return Path(text) if text == "-" else output_file(text)
 
 
 def on_or_off(text: str) -> bool:
-    """A switch.
+    """Parse a switch.
 
     >>> on_or_off("off")
     False
@@ -91,7 +92,7 @@ def on_or_off(text: str) -> bool:
 
 
 def grids(text: str) -> list[int]:
-    """A list of grids, rising.
+    """Parse a list of grids, rising.
 
     >>> grids("128,64")
     [64, 128]
@@ -103,7 +104,7 @@ def grids(text: str) -> list[int]:
 
 
 def names(text: str) -> tuple[str, ...]:
-    """Names with commas between them.
+    """Parse names with commas between them.
 
     >>> names("hardness, lower.material.hardness")
     ('hardness', 'lower.material.hardness')
@@ -112,7 +113,7 @@ def names(text: str) -> tuple[str, ...]:
 
 
 def name_or_number(text: str) -> str | int:
-    """A name, or a whole number.
+    """Parse a name, or a whole number.
 
     >>> name_or_number("sphere"), name_or_number("2")
     ('sphere', 2)

@@ -73,14 +73,14 @@ def check_workers(option: str, count: int) -> None:
 
 
 def _one_file(path: Path, other: Path) -> bool:
-    """Whether both names lead to one file, or would; links and hard links do."""
+    """Return whether both names lead to one file, or would; links and hard links do."""
     if os.path.realpath(path) == os.path.realpath(other):
         return True
     return os.path.isfile(path) and os.path.isfile(other) and os.path.samefile(path, other)
 
 
 def files_of(scene: Scene) -> list[Path]:
-    """The files that a scene's surfaces were measured into."""
+    """Return the files that a scene's surfaces were measured into."""
     from refimpl.measured.measured_surface import MeasuredSurface
 
     parts = (*scene.upper.surface.parts, *scene.lower.surface.parts)
@@ -105,7 +105,7 @@ def emit(document: object, path: Path | None, table: str) -> None:
 
 
 def plain(item: object) -> object:
-    """NaN and infinity, which JSON does not have, as None.
+    """Replace NaN and infinity, which JSON does not have, by None.
 
     >>> plain({"a": [1.0, float("nan")]})
     {'a': [1.0, None]}
@@ -161,7 +161,7 @@ class StatusLine:
 
 
 def judgement(result: Result) -> str:
-    """Error and tolerance with the sign between them; empty where nothing could be judged."""
+    """Return the error and tolerance with the sign between them; empty where nothing could be judged."""
     if result.error is None:
         return ""
     sign = ">=" if result.metric == "at_least" else "<="

@@ -60,7 +60,8 @@ def draw(solution: Solution, scene: Scene, path: Path) -> None:
 
 
 def hertz_of(scene: Scene, load: float) -> HertzSphere | None:
-    """The smooth, frictionless Hertz contact of a scene with a sphere; None for a scene without one."""
+    """Return the smooth, frictionless Hertz contact of a scene with a sphere; None for a scene without
+    one."""
     from refimpl.surfaces.shapes import Sphere
     from verification.exact import hertz
 
@@ -76,7 +77,7 @@ def hertz_of(scene: Scene, load: float) -> HertzSphere | None:
 
 
 def _panels(height: float) -> tuple[Figure, dict[str, Axes]]:
-    """A figure and its panels by name: two columns, from below, maps of this height (inches)."""
+    """Return a figure and its panels by name: two columns, from below, maps of this height (inches)."""
     import matplotlib.pyplot as plt
 
     rows = (  # names, height of the row, height of its left panel, which is at the row's top
@@ -115,7 +116,7 @@ def _with_bar(solution: Solution, name: str) -> str:
 
 
 def _key(axes: Axes, solution: Solution, view: View, hertz: HertzSphere | None) -> None:
-    """Whole domain where the maps show a part of it, numbers, and meaning of lines and colours."""
+    """Draw the whole domain where the maps show a part of it, numbers, and meaning of lines and colours."""
     axes.axis("off")
     if not view.whole:
         domain_map(axes.inset_axes((-0.08, 0.56, 0.44, 0.40)), solution, view)
@@ -152,7 +153,8 @@ def legend_of(solution: Solution, hertz: HertzSphere | None) -> list[Patch | Lin
 
 
 def profile(axes: Axes, solution: Solution, view: View, hertz: HertzSphere | None, axis: int) -> None:
-    """Pressure, shear and, to the right, the gap on the line of elements through the peak, along one axis."""
+    """Draw pressure, shear and, to the right, the gap on the line of elements through the peak, along one
+    axis."""
     import numpy as np
 
     grid = solution.grid
@@ -191,7 +193,7 @@ def profile(axes: Axes, solution: Solution, view: View, hertz: HertzSphere | Non
 
 
 def pressure_histogram(axes: Axes, solution: Solution, view: View) -> None:
-    """Share of the contact by pressure; what is at the hardness is a line with its share."""
+    """Draw the share of the contact by pressure; what is at the hardness is a line with its share."""
     import numpy as np
 
     plastic = solution.details.plastic
@@ -206,7 +208,7 @@ def pressure_histogram(axes: Axes, solution: Solution, view: View) -> None:
 
 
 def gap_histogram(axes: Axes, solution: Solution, view: View) -> None:
-    """Share of the window by gap, outside of the contact, whose share the title states."""
+    """Draw the share of the window by gap, outside of the contact, whose share the title states."""
     import numpy as np
 
     contact = view.cut(solution.contact)

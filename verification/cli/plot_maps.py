@@ -67,7 +67,7 @@ class View:
         return left, right, bottom, top
 
     def edges(self, step: int) -> tuple[float, float]:
-        """Edges of a block of ``step`` elements a side, in the unit of length."""
+        """Return the edges of a block of ``step`` elements per side, in the unit of length."""
         return step * self.spacings[0] / self.length.size, step * self.spacings[1] / self.length.size
 
     @property
@@ -151,7 +151,7 @@ def _sides(first: Sequence[int], last: Sequence[int], spacings: tuple[float, flo
 def _widened(
     first: Sequence[int], last: Sequence[int], shape: tuple[int, int], spacings: tuple[float, float]
 ) -> tuple[tuple[int, int], tuple[int, int]]:
-    """The ranges with a margin; the shorter side is a third of the longer, where the domain allows."""
+    """Return the ranges with a margin; the shorter side is a third of the longer, where the domain allows."""
     sides = _sides(first, last, spacings)
     margin = MARGIN * max(sides)
     least = (max(sides) + 2 * margin) / SLENDEREST
@@ -165,7 +165,7 @@ def _widened(
 
 
 def pressure_map(axes: Axes, solution: Solution, view: View) -> None:
-    """Pressure in contact; elements at the hardness are outlined."""
+    """Draw the pressure in contact; elements at the hardness are outlined."""
     values = view.cut(solution.pressure) / view.pressure.size
     image = _image(axes, values, view, "viridis", vmin=0.0)
     _bar(axes, image, f"pressure p ({view.pressure.name})")
@@ -176,7 +176,7 @@ def pressure_map(axes: Axes, solution: Solution, view: View) -> None:
 
 
 def shear_map(axes: Axes, solution: Solution, view: View) -> None:
-    """Local friction in contact; elements without adhesive shear in a colour of their own."""
+    """Draw the local friction in contact; elements without adhesive shear in a colour of their own."""
     unit = unit_at_scale(float(solution.traction.max()), PRESSURES)
     values = view.cut(solution.traction) / unit.size
     image = _image(axes, values, view, "cividis", vmin=0.0)
@@ -191,7 +191,7 @@ def shear_map(axes: Axes, solution: Solution, view: View) -> None:
 
 
 def gap_map(axes: Axes, solution: Solution, view: View) -> None:
-    """Gap between the deformed surfaces; the contact in a colour of its own."""
+    """Draw the gap between the deformed surfaces; the contact in a colour of its own."""
     import numpy as np
 
     gap = np.maximum(view.cut(solution.gap), 0.0) / view.gap.size
@@ -202,7 +202,7 @@ def gap_map(axes: Axes, solution: Solution, view: View) -> None:
 
 
 def domain_map(axes: Axes, solution: Solution, view: View) -> None:
-    """Whole domain: the contact, and the window of the other maps."""
+    """Draw the whole domain: the contact, and the window of the other maps."""
     from matplotlib.patches import Rectangle
 
     contact, step = pooled(solution.contact, most=160)
@@ -222,7 +222,7 @@ def domain_map(axes: Axes, solution: Solution, view: View) -> None:
 
 
 def sections(axes: Axes, solution: Solution, view: View) -> None:
-    """Lines of both profiles, through the peak."""
+    """Draw the lines of both profiles, through the peak."""
     x, y = solution.grid.x[view.peak[0]], solution.grid.y[view.peak[1]]
     for line in (axes.axhline(y / view.length.size), axes.axvline(x / view.length.size)):
         line.set(color=BLACK, linestyle=(0, (4, 3)), linewidth=0.6)
@@ -248,7 +248,7 @@ def outline(axes: Axes, where: Mask, view: View, colour: str) -> None:
 def _image(
     axes: Axes, values: Array, view: View, colours: str, *, lowest: bool = False, **limits: Any
 ) -> Any:
-    """A field over the window; zeros of pressure and shear are left white."""
+    """Return a field over the window; zeros of pressure and shear are left white."""
     import numpy as np
 
     blocks, step = pooled(values, lowest=lowest)
@@ -277,13 +277,13 @@ def _show(axes: Axes, picture: NDArray[Any], step: int, view: View, **options: A
 
 
 def _bar(axes: Axes, image: Any, title: str, extend: str = "neither") -> None:
-    """A colour bar as tall as the map; its quantity and unit are the map's title."""
+    """Draw a colour bar as tall as the map; its quantity and unit are the map's title."""
     axes.figure.colorbar(image, cax=axes.inset_axes((1.03, 0.0, 0.05, 1.0)), extend=extend)
     axes.set_title(title, loc="left")
 
 
 def _coloured(where: Mask, colour: str) -> Array:
-    """An image of the marked elements in one colour, transparent elsewhere."""
+    """Return an image of the marked elements in one colour, transparent elsewhere."""
     import numpy as np
     from matplotlib.colors import to_rgb
 
@@ -293,7 +293,7 @@ def _coloured(where: Mask, colour: str) -> Array:
 
 
 def _arrow(axes: Axes, direction: float) -> None:
-    """Direction in which the upper body slides, above the map's right end."""
+    """Draw the direction in which the upper body slides, above the map's right end."""
     from matplotlib.text import OffsetFrom
 
     half = 9.0  # points, of the arrow's length
@@ -305,6 +305,6 @@ def _arrow(axes: Axes, direction: float) -> None:
         textcoords=corner, annotation_clip=False, arrowprops={"arrowstyle": "->", "lw": 0.9},
     )  # fmt: skip
     axes.annotate(
-        "upper body slides", (1.0, 1.0), (-2.5 * half, 8.0), xycoords="axes fraction",
+        "sliding", (1.0, 1.0), (-2.5 * half, 8.0), xycoords="axes fraction",
         textcoords="offset points", ha="right", va="center", fontsize=7,
     )  # fmt: skip

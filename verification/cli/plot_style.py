@@ -50,7 +50,7 @@ def unit_at_scale(value: float, units: tuple[Unit, ...]) -> Unit:
 
 @contextmanager
 def print_style() -> Iterator[None]:
-    """Within the block figures are made for print, and need no display."""
+    """Make figures for print within the block, without a display."""
     import matplotlib
 
     matplotlib.use("Agg")

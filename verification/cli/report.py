@@ -79,7 +79,8 @@ def run(options: argparse.Namespace) -> int:
 
 
 def registered(solver: str | None) -> dict[str, dict[str, Any]]:
-    """Claim, metric, tolerance and tier of this version's cases; of a run of a solver, the suite's too."""
+    """Return the claim, metric, tolerance and tier of this version's cases; of a run of a solver, the suite's
+    too."""
     from verification.framework.registry import load
     from verification.solver_suite import convergence, suite
 
@@ -93,7 +94,7 @@ def registered(solver: str | None) -> dict[str, dict[str, Any]]:
 
 
 def read_run(path: Path, option: str = "--results") -> Any:
-    """A result file of `verify`, checked; raises InputError, naming the option, for anything else.
+    """Return a result file of `verify`, checked; raises InputError, naming the option, for anything else.
 
     A committed file may be a study's as well, which the exhibit that shows it checks.
     """

@@ -9,8 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from verification.cli.grids import DEFAULT_TEXT, default_grid
 from verification.cli.options import (
+    DEFAULT_GRID,
     Options,
     elements,
     gigabytes,
@@ -75,7 +75,7 @@ ONE_OF = ("--grid", "--accuracy")
 OPTIONS: Options = {
     "scene": option("a scene's TOML file, or the name of a shipped scene", metavar="SCENE"),
     "--grid": option(
-        f"N elements along the longer side, or both numbers, 128x64 ({DEFAULT_TEXT})",
+        f"N elements along the longer side, or both numbers, 128x64 ({DEFAULT_GRID})",
         metavar="N",
         type=elements,
     ),
@@ -135,8 +135,6 @@ def run(options: argparse.Namespace) -> int:
 
     began = time.perf_counter()
     scene = _read_scene(options)
-    if options.grid is None and options.accuracy is None:
-        options.grid = default_grid(scene)
     keywords = {name: getattr(options, name) for name in (*PASSED_ON, *SWITCHES, *LIMITS)}
     if options.explain:
         return _explain(scene, options, keywords)

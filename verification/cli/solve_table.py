@@ -35,7 +35,8 @@ def show_finished(interrupt: KeyboardInterrupt, scene: str) -> None:
 
 
 def document(solution: Solution, scene: str) -> dict[str, object]:
-    """The JSON of a solve: SI units and the names of `refimpl.Solution`; arrays are for the VTK file."""
+    """Return the JSON of a solve: SI units and the names of `refimpl.Solution`; arrays are for the VTK
+    file."""
     from verification.output.provenance import provenance
 
     summary = {key: plain(value) for key, value in solution.summary().items()}

@@ -67,7 +67,8 @@ class Judged:
 
 
 def unseen_faults(results: Iterable[Result]) -> list[str]:
-    """Faults that no case that ran is meant to catch: a solver of few abilities is judged by few cases."""
+    """Return the faults that no case that ran is meant to catch: a solver of few abilities is judged by few
+    cases."""
     from verification.solver_suite.check import Fault
     from verification.solver_suite.suite import suite
 
@@ -77,7 +78,8 @@ def unseen_faults(results: Iterable[Result]) -> list[str]:
 
 
 def likely_faults(results: Iterable[Result], most: int = 4) -> list[str]:
-    """Faults by the share of the cases that name them and fail, then by how many fail; the first of them.
+    """Return the faults by the share of the cases that name them and fail, then by how many fail; the first
+    of them.
 
     A fault fails wherever it is named, so a case that names it and passes speaks against it.
     """
@@ -131,7 +133,8 @@ def text(name: str, judged: Judged) -> str:
 
 
 def table(name: str, judged: Judged) -> str:
-    """Verdicts, reasons of failure, what was not run and why, what no case looked for, and the counts."""
+    """Return the verdicts, reasons of failure, what was not run and why, what no case looked for, and the
+    counts."""
     from verification.solver_suite import failures
 
     done = judged.run
@@ -167,7 +170,7 @@ def table(name: str, judged: Judged) -> str:
 
 
 def reason(result: Result, claim: str, error: str) -> str:
-    """Why there is no verdict; or the claim, the error beside its tolerance, and the finding."""
+    """Return the reason for no verdict; or the claim, the error beside its tolerance, and the finding."""
     if result.status == "error":
         return result.note
     return f"{claim}. Found: {'; '.join(filter(None, (error, result.note)))}"

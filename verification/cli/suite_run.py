@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
+import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 from verification.cli import suite_report, suite_table
@@ -61,8 +66,41 @@ OPTIONS: Options = {
 """Options that mean nothing without a solver."""
 
 
+class Ended(KeyboardInterrupt):
+    """A signal requested the end, as a batch queue's or that of a closed terminal."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.number = number
+
+
+@contextmanager
+def unwinding(*numbers: signal.Signals) -> Iterator[None]:
+    """Raise `Ended` at the first of these signals in the block; the next find the clean-up under way.
+
+    A signal that is ignored stays so (`nohup`). Only the main thread can have it so.
+    """
+    found = {number: signal.getsignal(number) for number in numbers}
+    if threading.current_thread() is not threading.main_thread():
+        found = {}
+    taken = [number for number, action in found.items() if action is not signal.SIG_IGN]
+
+    def unwind(number: int, frame: FrameType | None) -> None:
+        for each in taken:
+            signal.signal(each, signal.SIG_IGN)
+        raise Ended(number)
+
+    for number in taken:
+        signal.signal(number, unwind)
+    try:
+        yield
+    finally:
+        for number in taken:
+            signal.signal(number, found[number])
+
+
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """The options that name a solver and say what it can do."""
+    """Add the options that name a solver and say what it can do."""
     group = parser.add_argument_group(
         "bring your own solver",
         "Run the suite of verification.solver_suite with it, one case after the other whatever --tier\n"
@@ -75,7 +113,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def chosen(options: argparse.Namespace) -> bool:
-    """True if a solver is named. Raises `InputError` for its options without one."""
+    """Return True if a solver is named. Raises `InputError` for its options without one."""
     if options.solver is not None or options.exec is not None:
         return True
     for name in OPTIONS:
@@ -89,7 +127,6 @@ def run(options: argparse.Namespace) -> int:
     from verification.framework.case import readable
     from verification.output.files import write_text
     from verification.solver_suite import convergence, suite
-    from verification.solver_suite.process import Ended
 
     if options.discretisation == "other" and options.thorough:
         raise refusal("--thorough", True, "nothing beside --discretisation other")
@@ -127,13 +164,12 @@ def _judged(
     from refimpl.operating_system import END_SIGNALS
     from verification.output.files import Progress
     from verification.solver_suite import isolated
-    from verification.solver_suite.process import Ended, unwinding
 
     start, progress = time.perf_counter(), Progress(len(checks))
     results: list[Result] = []
     left: list[str] = []
     identity: dict[str, str | None] = {}
-    ended: Ended | KeyboardInterrupt | None = None
+    ended: KeyboardInterrupt | None = None
 
     def judged(result: Result) -> None:
         results.append(result)
@@ -152,7 +188,7 @@ def _judged(
                 tick=judged,
                 left=left.append,
             )
-    except (Ended, KeyboardInterrupt) as end:
+    except KeyboardInterrupt as end:
         ended = end
     progress.close()
     seconds = time.perf_counter() - start

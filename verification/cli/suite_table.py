@@ -41,7 +41,8 @@ def run_entry(identity: Mapping[str, Any], suite: str, results: Iterable[Result]
 
 
 def published(path: Path = PUBLISHED) -> list[dict[str, Any]]:
-    """Entries of the published codes, without set-ups that are wrong on purpose; none without the file."""
+    """Return the entries of the published codes, without set-ups that are wrong on purpose; none without the
+    file."""
     from verification.output.result_files import read_result
 
     if not path.is_file():
@@ -57,7 +58,7 @@ def published(path: Path = PUBLISHED) -> list[dict[str, Any]]:
 
 
 def text_of(suffix: str, entries: Sequence[Mapping[str, Any]]) -> str:
-    """The table of these entries, the first being the run."""
+    """Return the table of these entries, the first being the run."""
     if suffix == ".csv":
         return _csv(entries)
     how, note = (_latex, f"% {NOTE}\n") if suffix == ".tex" else (_markdown, f"{NOTE}\n\n")
@@ -65,7 +66,7 @@ def text_of(suffix: str, entries: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _csv(entries: Sequence[Mapping[str, Any]]) -> str:
-    """A row for each code and case: all numbers."""
+    """Return a row for each code and case: all numbers."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(COLUMNS)
@@ -78,7 +79,7 @@ def _csv(entries: Sequence[Mapping[str, Any]]) -> str:
 
 
 def overview(entries: Sequence[Mapping[str, Any]]) -> tuple[Sequence[str], Rows]:
-    """Head and rows: who each code is, and how many cases it passed."""
+    """Return the head and rows: who each code is, and how many cases it passed."""
     head = ("code", "version", "checksum", "suite", "passed", "failed", "errors", "not applicable")
     rows = []
     for entry in entries:
@@ -91,7 +92,7 @@ def overview(entries: Sequence[Mapping[str, Any]]) -> tuple[Sequence[str], Rows]
 
 
 def verdicts(entries: Sequence[Mapping[str, Any]]) -> tuple[Sequence[str], Rows]:
-    """Head and rows: each case's verdict by code, with the error as a share of the tolerance."""
+    """Return the head and rows: each case's verdict by code, with the error as a share of the tolerance."""
     by_code = [{row["id"]: row for row in entry["results"]} for entry in entries]
     cases = dict.fromkeys(case for rows in by_code for case in rows)
     head = ("case", *(str(entry["name"]) for entry in entries))
@@ -122,7 +123,7 @@ NOTE = "Verdicts with the error as a share of the tolerance; up to 1 is a pass, 
 
 
 def _escaped(text: str) -> str:
-    """Text as LaTeX prints it.
+    """Return the text as LaTeX prints it.
 
     >>> _escaped("a_b & 5 %")
     'a\\\\_b \\\\& 5 \\\\%'

@@ -50,8 +50,9 @@ message of a failed run is printed, and the status of the others stands in their
   [vary]                      # any of: grid load upper_rms lower_rms correlation_length tau beta
   grid = [128, 256]           #   sliding_direction sliding_offset (SI, rad), and by full name
                               #   numbers of surfaces and materials, seeds, and the path of
-                              #   a measured surface (relative to this file); grid is needed
-                              #   unless [solve] has an accuracy; one value needs no list
+                              #   a measured surface (relative to this file); without a grid
+                              #   256 elements, of measured maps each run's own points, up to
+                              #   512; one value needs no list
   lower_rms = [0.504e-6, 1.68e-6]
   "lower.surface[0].lay" = [0.0, 0.7854]
   [solve]                     # optional: method, oblique, slope_correction, tolerance,
@@ -219,7 +220,7 @@ def _table(done: Sweep, store: Path) -> str:
 
 
 def _quality(rows: list[Row]) -> list[str]:
-    """Error bars against the scatter, and the warnings with their numbers of runs."""
+    """Return the error bars against the scatter, and the warnings with their numbers of runs."""
     from verification.sweep.quality import quality_of, warnings_of
 
     table = [
@@ -271,7 +272,7 @@ class _Line(StatusLine):
 
 
 def time_left(seconds: float | None) -> str:
-    """The time left in words.
+    """Return the time left in words.
 
     >>> time_left(None), time_left(59.4), time_left(3725)
     ('', '59 s left', '1 h 02 min left')

@@ -8,7 +8,12 @@ from pathlib import Path
 from verification.cli.options import SCENE, Options, grids, option
 from verification.cli.output import check_outputs, emit, files_of, refusal
 
-EPILOG = "examples:\n  rough-friction tradeoff table1-rough --grids 64,128,256 --reference 1024"
+EPILOG = """examples:
+  rough-friction tradeoff table1-rough --grids 64,128,256 --reference 1024
+
+What solve --accuracy asks for, and --explain --accuracy forecasts, stands in the last column: the grid
+whose error bar is short enough. The column before it is known from the reference alone.
+"""
 OPTIONS: Options = {
     "scene": SCENE,
     "--grids": option("default 32,64,128,256", metavar="M,M,...", type=grids, default=[32, 64, 128, 256]),

@@ -66,7 +66,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def table(done: Run) -> str:
-    """One line per case, the reasons of those that did not pass, and the counts."""
+    """Return one line per case, the reasons of those that did not pass, and the counts."""
     rows = [[r.status, r.id, judgement(r), f"{r.seconds:.1f} s"] for r in done.results]
     reasons = [[r.id, r.note] for r in done.results if r.status in ("error", "unavailable")]
     counts = ", ".join(f"{number} {status}" for status, number in done.counts.items())

@@ -25,6 +25,7 @@ from verification.output.provenance import provenance
 from verification.output.result_files import read_result, write_result
 
 REFERENCE = 384  # elements along the longer side
+_KEPT = 3  # grids of a scene in the packed file at most
 WAVES = "short waves"  # part of an error bar
 FITTED = (
     "friction_coefficient",
@@ -63,6 +64,7 @@ def solve_all(path: Path, seeds: Iterable[int], kinds: Iterable[str] = tuple(CLA
     known = {(one["kind"], one["seed"]) for one in _records(path)}
     todo = [(kind, seed) for seed in seeds for kind in kinds if (kind, seed) not in known]
     progress = Progress(len(todo))
+    path.parent.mkdir(parents=True, exist_ok=True)
     with appending(path) as lines:
         for kind, seed in todo:
             lines.write(json.dumps(_solved(kind, seed)) + "\n")
@@ -72,7 +74,7 @@ def solve_all(path: Path, seeds: Iterable[int], kinds: Iterable[str] = tuple(CLA
 
 
 def _solved(kind: str, seed: int) -> dict[str, Any]:
-    """One line: without grids where one of them did not converge or has no contact."""
+    """Return one line: without grids where one of them did not converge or has no contact."""
     one, found = scene(kind, seed), list[dict[str, Any]]()
     for M in (*GRIDS, REFERENCE):
         try:
@@ -88,7 +90,7 @@ def _solved(kind: str, seed: int) -> dict[str, Any]:
 
 
 def _records(path: Path) -> Iterator[dict[str, Any]]:
-    """The lines of a file; a last one cut short by a kill is skipped."""
+    """Yield the lines of a file; a last one cut short by a kill is skipped."""
     if not path.exists():
         return
     for line in path.read_text(encoding="utf-8").splitlines():
@@ -111,16 +113,21 @@ def solved(path: Path) -> list[Solved]:
 def pack(scenes: Iterable[Solved], path: Path) -> None:
     """Write scenes as the result file that is committed: features in columns, as short as errors allow.
 
-    Of the grids every second one is kept, and the reference.
+    Of four grids every second one is kept, and the reference.
     """
     rows = []
     for one in scenes:
-        kept = *one.grids[one.seed % 2 : -1 : 2], one.grids[-1]
+        kept = one.grids if len(one.grids) <= _KEPT else (*one.grids[one.seed % 2 : -1 : 2], one.grids[-1])
         rows.append((one.kind, one.seed, one.exact, [_plain(grid) for grid in kept]))
     names = list(rows[0][3][0])
     columns = {name: [grid[name] for *_, grids in rows for grid in grids] for name in names}
     index = [[kind, seed, len(grids), dict(exact)] for kind, seed, exact, grids in rows]
     write_result({"provenance": provenance(), "scenes": index, "columns": columns}, path)
+
+
+def merged(stored: Iterable[Solved], new: Iterable[Solved]) -> list[Solved]:
+    """Return the stored scenes with new ones added, or in their place by class and seed."""
+    return list({(one.kind, one.seed): one for one in (*stored, *new)}.values())
 
 
 def unpacked(path: Path) -> list[Solved]:
@@ -141,7 +148,8 @@ _DIGITS = {"numbers": 6, "first_contact": 5, "peak": 5, "faces": 5}
 
 
 def _plain(grid: GridFeatures) -> dict[str, Any]:
-    """Features as short plain values: shares of faces to 0.01, parts of error bars summed but for waves'."""
+    """Return the features as short plain values: shares of faces to 0.01, parts of error bars summed but for
+    waves'."""
     record = asdict(grid)
     record["highest_areas"] = ()
     record["faces"] = [[k, round(n, 2)] for k, n in enumerate(grid.faces) if n >= 0.005]
@@ -164,7 +172,7 @@ def as_corrected(features: GridFeatures) -> GridFeatures:
 
 
 def _short(value: Any, digits: int) -> Any:
-    """The value with its numbers rounded to significant digits."""
+    """Return the value with its numbers rounded to significant digits."""
     if isinstance(value, Mapping):
         return {name: _short(one, digits) for name, one in value.items()}
     if isinstance(value, list | tuple):

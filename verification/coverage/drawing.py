@@ -109,7 +109,7 @@ class Waves(rf.Surface):
 
 
 def measured_like(rng: np.random.Generator, points: int, rms: float, hurst: float, roll_off: int) -> Array:
-    """Self-affine heights (m), ``points x points``: white noise under a spectrum q^-(1 + hurst).
+    """Return self-affine heights (m), ``points x points``: white noise under a spectrum q^-(1 + hurst).
 
     Constant spectrum below ``roll_off`` waves per side, nothing above a quarter of the points, a negative
     skewness as of a run-in surface.

@@ -46,7 +46,7 @@ class Coverage:
 
 
 def coverages(stored: Mapping[int, Sequence[GridSolve]], accuracy: float) -> list[Coverage]:
-    """All numbers of all scenes; a scene's finest grid is its reference."""
+    """Return all numbers of all scenes; a scene's finest grid is its reference."""
     return [
         _replayed(solves, number, accuracy)
         for seed, solves in stored.items()
@@ -55,7 +55,7 @@ def coverages(stored: Mapping[int, Sequence[GridSolve]], accuracy: float) -> lis
 
 
 def _replayed(solves: Sequence[GridSolve], number: str, accuracy: float) -> Coverage:
-    """A grid is asked for only if the reference is at least twice as fine."""
+    """Judge a grid only if the reference is at least twice as fine."""
     reference, bound = reference_of(solves, number)
     usable = {one.M: one for one in solves if 2 * one.M <= solves[-1].M}
     finer = [M for M in usable if M not in FIRST_GRIDS]
@@ -82,7 +82,7 @@ def _replayed(solves: Sequence[GridSolve], number: str, accuracy: float) -> Cove
 
 
 def reference_of(solves: Sequence[GridSolve], number: str) -> tuple[float, float]:
-    """The finest grid's number, without its edge's mean excess, and a bound of what is left.
+    """Return the finest grid's number, without its edge's mean excess, and a bound of what is left.
 
     What is smooth - the peak of the parabola through the highest elements, friction without tau's share - is
     bounded by its change from the grid before. The parabola is the estimator's, on elements of half the size

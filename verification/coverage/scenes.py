@@ -25,7 +25,7 @@ class Drawn:
 
 
 def random_scene(seed: int) -> Drawn:
-    """The scene of a seed; the classes take turns.
+    """Return the scene of a seed; the classes take turns.
 
     >>> random_scene(3).kind, random_scene(3).scene.load == random_scene(3).scene.load
     ('rough ball', True)
@@ -49,7 +49,7 @@ class _Dice(Dice):
         return rf.Material(E=self.log(2e9, 400e9), nu=float(self.rng.uniform(0.1, 0.49)))
 
     def friction(self, mean_pressure: float) -> rf.Friction:
-        """Neither, one or both of tau and beta; tau up to a third of the mean pressure."""
+        """Draw neither, one or both of tau and beta; tau up to a third of the mean pressure."""
         tau, beta = mean_pressure * self.log(0.003, 0.3), self.log(0.01, 0.4)
         kind = self.rng.random()
         return rf.Friction(tau=0.0 if kind < 0.1 or kind > 0.9 else tau, beta=0.0 if kind < 0.2 else beta)
@@ -57,7 +57,7 @@ class _Dice(Dice):
     def scene(
         self, upper: rf.Surface, lower: rf.Surface, load: float, pressure: float, periodic: bool = False
     ) -> rf.Scene:
-        """Both surfaces on this pair of materials; friction by the mean pressure to be expected (Pa)."""
+        """Join both surfaces on this pair of materials; friction by the mean pressure to be expected (Pa)."""
         return rf.Scene(
             upper=rf.Body(self.pair.upper, upper),
             lower=rf.Body(self.pair.lower, lower),
@@ -69,11 +69,11 @@ class _Dice(Dice):
         )
 
     def ball(self) -> Ball:
-        """A ball that touches on 0.08 to 0.3 of the side."""
+        """Return a ball that touches on 0.08 to 0.3 of the side."""
         return Ball(self.modulus, SIDE * self.log(2, 100), SIDE * self.log(0.08, 0.3))
 
     def phases(self) -> tuple[float, float]:
-        """Phases along x and y (rad)."""
+        """Return the phases along x and y (rad)."""
         return self.angle(), self.angle()
 
 
@@ -83,7 +83,8 @@ def _smooth(dice: _Dice) -> rf.Scene:
 
 
 def _barrel(dice: _Dice) -> rf.Scene:
-    """Elongated up to ten to one: nearly a cylinder, without the ends that Eq. (7) leaves singular."""
+    """Draw a contact elongated up to ten to one: nearly a cylinder, without the ends that Eq. (7) leaves
+    singular."""
     ball, ratio = dice.ball(), dice.log(1.5, 10)
     root = math.sqrt(ratio)
     shape = Barrel(ball.R / root, ball.R * root)
@@ -121,7 +122,7 @@ def _measured(dice: _Dice) -> rf.Scene:
 
 
 def _periodic_waves(dice: _Dice) -> rf.Scene:
-    """Bisinusoids up to two thirds of what flattens them, ``sqrt(2) pi E* amplitude / wavelength``."""
+    """Draw bisinusoids up to two thirds of what flattens them, ``sqrt(2) pi E* amplitude / wavelength``."""
     number, amplitude = int(dice.rng.integers(1, 4)), SIDE * dice.log(1e-4, 1e-2)
     flattening = math.sqrt(2) * math.pi * dice.modulus * amplitude * number / SIDE
     mean = flattening * dice.log(0.02, 0.66)
@@ -130,7 +131,7 @@ def _periodic_waves(dice: _Dice) -> rf.Scene:
 
 
 def _periodic_rough(dice: _Dice) -> rf.Scene:
-    """Rough planes; contact takes about ``2 p / (E* rms gradient)`` of the area (Bush et al. 1975)."""
+    """Draw rough planes; contact takes about ``2 p / (E* rms gradient)`` of the area (Bush et al. 1975)."""
     rough = rf.GaussianRoughness(SIDE * dice.log(1e-4, 3e-3), SIDE * dice.log(0.08, 0.4), dice.seeds[0])
     scale = dice.modulus * math.sqrt(2) * rough.rms_slope
     mean = scale * dice.log(0.02, 0.2)

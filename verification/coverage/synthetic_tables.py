@@ -63,17 +63,17 @@ class _Draw(Dice):
         return 1 / (1 / self.lower.plane_strain_modulus + 1 / self.upper.plane_strain_modulus)
 
     def ball(self, low: float, high: float) -> Ball:
-        """A ball of these materials with a contact radius between two shares of the side."""
+        """Return a ball of these materials with a contact radius between two shares of the side."""
         return Ball(self.materials(), SIDE * self.log(5, 100), SIDE * self.log(low, high))
 
     def friction(self, pressure: float, least_tau: float, most_beta: float) -> rf.Friction:
-        """Friction with tau up to 0.3 of a pressure (Pa) and beta from 0.02."""
+        """Return friction with tau up to 0.3 of a pressure (Pa) and beta from 0.02."""
         return rf.Friction(tau=pressure * self.log(least_tau, 0.3), beta=self.log(0.02, most_beta))
 
     def scene(
         self, shape: rf.Surface, rough: rf.Surface, hardness: float | None, friction: rf.Friction, load: float
     ) -> rf.Scene:
-        """A shape above roughness; it repeats where the shape is flat."""
+        """Return a shape above roughness; it repeats where the shape is flat."""
         return rf.Scene(
             upper=rf.Body(self.upper, shape),
             lower=rf.Body(replace(self.lower, hardness=hardness), rough),
@@ -86,7 +86,8 @@ class _Draw(Dice):
     def table(
         self, kind: str, scene: rf.Scene, span: float, count: int, noise: float, most: float, grid: int
     ) -> SyntheticTable:
-        """Friction at loads from the scene's over ``span`` up to it, and at a new one up to ``most`` of it.
+        """Return friction at loads from the scene's over ``span`` up to it, and at a new one up to ``most``
+        of it.
 
         Noise is normal, of a relative standard deviation.
         """

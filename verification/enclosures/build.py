@@ -14,7 +14,7 @@ MARGIN = 1e-10
 
 
 def proven() -> Iterator[tuple[EnclosedScene, Proof]]:
-    """Every scene with its proof, one by one."""
+    """Yield every scene with its proof, one by one."""
     for known in (*scenes(), oblique_scene()):
         yield known, prove_proposed(known)
         if known.name == "rough":
@@ -22,12 +22,12 @@ def proven() -> Iterator[tuple[EnclosedScene, Proof]]:
 
 
 def prove_proposed(known: EnclosedScene) -> Proof:
-    """Proof of the contact set that the dense reference proposes. Raises `NotProven`."""
+    """Return the proof of the contact set that the dense reference proposes. Raises `NotProven`."""
     return prove(known, known.solve("dense").contact)
 
 
 def near_ties(base: EnclosedScene) -> Iterator[tuple[EnclosedScene, Proof]]:
-    """The free element nearest to contact, raised until it misses contact, or makes it, by `MARGIN`."""
+    """Yield the free element nearest to contact, raised until it misses contact, or makes it, by `MARGIN`."""
     proof = prove_proposed(base)
     separations = np.array([float(w) for w in proof.separations])
     nearest = int(separations.argmin())

@@ -64,13 +64,13 @@ class EnclosedScene:
         )
 
     def solve(self, method: Method = "fft", tolerance: float = 1e-12) -> rf.Solution:
-        """The scene solved, with the terms that the proof has."""
+        """Return the scene solved, with the terms that the proof has."""
         terms: Any = {"approach": self.approach, "oblique": self.oblique}
         return rf.solve(self.scene, self.M, method=method, tolerance=tolerance, **terms)
 
 
 def surface(M: int, seed: int, rms: float, radius: float | None = None, quantum: float = 2.0**-40) -> Array:
-    """White heights of this rms (m) on a bump of this radius (m), in multiples of ``quantum``."""
+    """Return white heights of this rms (m) on a bump of this radius (m), in multiples of ``quantum``."""
     z = rms * np.random.default_rng(seed).standard_normal((M, M))
     if radius is not None:
         x = ((np.arange(M) + 0.5) / M - 0.5) * SIDE
@@ -79,7 +79,8 @@ def surface(M: int, seed: int, rms: float, radius: float | None = None, quantum:
 
 
 def scenes() -> tuple[EnclosedScene, ...]:
-    """All but the near ties and the oblique one, which take a proven or a solved scene to start from."""
+    """Return all but the near ties and the oblique one, which take a proven or a solved scene to start
+    from."""
     return (
         EnclosedScene("smooth", "a smooth bump without friction", surface(9, 0, 0.0, 0.2), load=12.0),
         EnclosedScene("rough", "a rough bump on identical metal", surface(12, 1, 0.1e-6, 0.3),
@@ -104,7 +105,7 @@ def scenes() -> tuple[EnclosedScene, ...]:
 
 
 def oblique_scene() -> EnclosedScene:
-    """A steep rough bump; held are the slopes that the dense reference ends with."""
+    """Return a steep rough bump; held are the slopes that the dense reference ends with."""
     start = EnclosedScene(
         "oblique", "slopes of some 0.05 in Eqs (2), (3) and (6), with tau and beta",
         surface(7, 9, 2e-6, 0.02), lower=POLYMER, friction=SLIDING, load=20.0, direction=0.4,
@@ -114,7 +115,8 @@ def oblique_scene() -> EnclosedScene:
 
 
 def near_tie(base: EnclosedScene, name: str, element: tuple[int, int], rise: float) -> EnclosedScene:
-    """``base`` with one element raised by about ``rise`` (m), so that it just does, or does not, touch."""
+    """Return ``base`` with one element raised by about ``rise`` (m), so that it just does, or does not,
+    touch."""
     quantum = 2.0**-60
     heights = base.heights.copy()
     heights[element] += np.rint(rise / quantum) * quantum

@@ -37,11 +37,11 @@ class Enclosed:
     radius: float
 
     def misses(self, value: float) -> float:
-        """Distance of ``value`` from the farthest point of the enclosure."""
+        """Return the distance of ``value`` from the farthest point of the enclosure."""
         return abs(value - self.mid) + self.radius
 
     def meets(self, other: Enclosed) -> bool:
-        """True if the enclosures have a common point, as true enclosures must."""
+        """Return True if the enclosures have a common point, as true enclosures must."""
         return abs(self.mid - other.mid) <= self.radius + other.radius
 
 
@@ -61,7 +61,7 @@ class Enclosure:
 
 
 def document(known: EnclosedScene, proof: Proof) -> dict[str, Any]:
-    """The JSON document of a proof."""
+    """Return the JSON document of a proof."""
     return {
         "format": FORMAT,
         "name": known.name,
@@ -82,7 +82,7 @@ def document(known: EnclosedScene, proof: Proof) -> dict[str, Any]:
 
 
 def enclosed(ball: Ball) -> Enclosed:
-    """The ball in doubles: its midpoint, and a radius that covers the midpoint's rounding too."""
+    """Return the ball in doubles: its midpoint, and a radius that covers the midpoint's rounding too."""
     mid = float(ball.mid())
     radius = float(abs(ball - arb().arb(mid)).upper())
     return Enclosed(mid, radius * (1 + 4 * _EPS))
@@ -97,7 +97,8 @@ def write(known: EnclosedScene, proof: Proof, folder: Path) -> Path:
 
 @cache
 def stored() -> tuple[Enclosure, ...]:
-    """All enclosed scenes that ship with the package, by name. Raises FileNotFoundError without any."""
+    """Return all enclosed scenes that ship with the package, by name. Raises FileNotFoundError without
+    any."""
     folder = resources.files("verification.enclosures")
     files = sorted((file for file in folder.iterdir() if file.name.endswith(".json")), key=lambda f: f.name)
     if not files:
@@ -106,12 +107,12 @@ def stored() -> tuple[Enclosure, ...]:
 
 
 def named(name: str) -> Enclosure:
-    """The stored scene of this name. Raises StopIteration for an unknown one."""
+    """Return the stored scene of this name. Raises StopIteration for an unknown one."""
     return next(known for known in stored() if known.scene.name == name)
 
 
 def parsed(content: Mapping[str, Any]) -> Enclosure:
-    """A document read back. Raises ValueError for another format, KeyError for a missing part."""
+    """Return a document read back. Raises ValueError for another format, KeyError for a missing part."""
     if content["format"] != FORMAT:
         raise ValueError(f"not a file of the format {FORMAT!r}")
     contact = np.array([[mark == "#" for mark in row] for row in content["proof"]["contact"]])
@@ -164,7 +165,8 @@ def _scene(content: Mapping[str, Any]) -> EnclosedScene:
 
 
 def _margins(proof: Proof) -> dict[str, float | None]:
-    """Smallest pressure over the peak and w over the approach (None in full contact), proven positive."""
+    """Return the smallest pressure over the peak and w over the approach (None in full contact), proven
+    positive."""
     pressures = [float(ball) for ball in proof.pressures]
     separations = [float(ball) for ball in proof.separations]
     return {
@@ -181,7 +183,8 @@ def _drawn(contact: Mask) -> list[str]:
 
 
 def relative(value: float, exact: Enclosed, scale: float) -> float:
-    """Largest distance of ``value`` from the enclosure over ``scale``; exact agreement of zeros is 0.
+    """Return the largest distance of ``value`` from the enclosure over ``scale``; exact agreement of zeros is
+    0.
 
     >>> relative(1.5, Enclosed(1.0, 0.25), 1.0)
     0.75

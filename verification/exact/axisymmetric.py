@@ -17,7 +17,7 @@ DIGITS = 25
 def displacement(
     pressure: Callable[[mp.mpf], mp.mpf], radius: float, r: float, modulus: float
 ) -> tuple[float, float]:
-    """Normal displacement u(r) (m) and the quadrature's own error estimate (m).
+    """Return the normal displacement u(r) (m) and the quadrature's own error estimate (m).
 
     ``pressure(s)`` (Pa) acts on ``0 < s < radius`` (m) and may be singular at either end; ``modulus`` is E*
     (Pa). u(r) = 4/(pi E*) * integral of p(s) s/(s + r) K(m) ds, m = 4 s r/(s + r)^2.

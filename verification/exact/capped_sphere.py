@@ -1,4 +1,4 @@
-"""Frictionless contact of a paraboloid whose pressure ends at a hardness, from rings of uniform pressure.
+"""Frictionless contact of a paraboloid, its pressure capped at a hardness, from rings of uniform pressure.
 
 Sources: Johnson 1985, section 3.4 (the displacement of a uniformly loaded circle, in complete elliptic
 integrals). The two bounds are found by exchanging all rings that break a sign, with the approach as an
@@ -39,7 +39,8 @@ class Capped:
 
 
 def disc_displacement(r: Array, radius: Array) -> Array:
-    """Displacement (m) at ``r`` (m) by unit pressure on a circle of the given ``radius`` (m), times E*.
+    """Return the displacement (m) at ``r`` (m) by unit pressure on a circle of the given ``radius`` (m),
+    times E*.
 
     >>> float(disc_displacement(np.array([0.0]), np.array([1.0]))[0])   # 2 p a / E* at the centre
     2.0
@@ -84,7 +85,8 @@ def capped_sphere(sphere: Sphere, hardness: float, rings: int = 800) -> Capped:
 
 
 def plastic_limit(sphere: Sphere, hardness: float) -> tuple[float, float]:
-    """Radius and approach (m) where all of the contact is at the hardness: a uniformly loaded circle.
+    """Return the radius and approach (m) where all of the contact is at the hardness: a uniformly loaded
+    circle.
 
     ``a = sqrt(P / (pi H))``, and ``d = a^2 / 2R + 4 H a / (pi E*)`` at its edge.
     """
@@ -95,7 +97,8 @@ def plastic_limit(sphere: Sphere, hardness: float) -> tuple[float, float]:
 def _balanced(
     compliance: Array, gap: Array, area: Array, load: float, pressure: Array, free: NDArray[np.bool_]
 ) -> tuple[Array, float]:
-    """Pressures with those of the free rings, and the approach, from contact there and the load's balance."""
+    """Return the pressures with those of the free rings, and the approach, from contact there and the load's
+    balance."""
     k = np.flatnonzero(free)
     scale = float(np.abs(compliance).max())
     n = len(k)
@@ -110,13 +113,14 @@ def _balanced(
 
 
 def _edge(r: Array, pressure: Array, h: float) -> float:
-    """Radius at which the square of the pressure extrapolates to zero, if that is near the outermost ring."""
+    """Return the radius at which the square of the pressure extrapolates to zero, if that is near the
+    outermost ring."""
     last = np.flatnonzero(pressure > 0)
     return _zero(r, pressure**2, last[-_FITTED:], float(r[last[-1]] + h / 2), h)
 
 
 def _core(r: Array, room: Array, full: NDArray[np.bool_], h: float) -> float:
-    """Radius at which the square of the room below the hardness extrapolates to zero."""
+    """Return the radius at which the square of the room below the hardness extrapolates to zero."""
     if not full.any():
         return 0.0
     first = int(np.flatnonzero(~full)[0])

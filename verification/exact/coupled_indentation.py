@@ -43,13 +43,13 @@ class CoupledHertz:
     beta: float
 
     def traction_force(self, r: ArrayLike) -> Array:
-        """Q(r) (N): tau pi r^2 + beta P (1 - (1 - r^2/a^2)^(3/2)), constant beyond a."""
+        """Return Q(r) (N): tau pi r^2 + beta P (1 - (1 - r^2/a^2)^(3/2)), constant beyond a."""
         a = self.hertz.contact_radius
         rho2 = np.minimum(1.0, (np.asarray(r, dtype=float) / a) ** 2)
         return np.asarray(self.tau * np.pi * a**2 * rho2 + self.beta * self.hertz.load * _carried(rho2))
 
     def coupling_displacement(self, x: ArrayLike, y: ArrayLike) -> Array:
-        """Normal displacement by friction alone (m) at ``(x, y)`` (m), shapes broadcast."""
+        """Return the normal displacement by friction alone (m) at ``(x, y)`` (m), shapes broadcast."""
         a = self.hertz.contact_radius
         x, r2 = np.asarray(x, dtype=float), np.asarray(x, dtype=float) ** 2 + np.asarray(y, dtype=float) ** 2
         rho2 = np.maximum(r2 / a**2, np.finfo(float).tiny)
@@ -59,8 +59,8 @@ class CoupledHertz:
         return np.asarray(self.c0 * x * (force / rho2) / a**2)
 
     def gap(self, x: ArrayLike, y: ArrayLike) -> Array:
-        """The gap (m) whose exact sliding state this is: (x^2 + y^2)/2R minus the coupling displacement; not
-        shifted.
+        """Return the gap (m) whose exact sliding state this is: (x^2 + y^2)/2R minus the coupling
+        displacement; not shifted.
         """
         r2 = np.asarray(x, dtype=float) ** 2 + np.asarray(y, dtype=float) ** 2
         return np.asarray(r2 / (2 * self.hertz.radius) - self.coupling_displacement(x, y))
@@ -72,7 +72,8 @@ class CoupledHertz:
 
 
 def _carried(rho2: Array) -> Array:
-    """Share of the Hertz load within r: 1 - (1 - rho^2)^(3/2), without cancellation near the axis."""
+    """Return the share of the Hertz load within r: 1 - (1 - rho^2)^(3/2), without cancellation near the
+    axis."""
     root = np.sqrt(1 - rho2)
     return np.asarray(rho2 * (1 + root + root**2) / (1 + root))
 
@@ -98,7 +99,7 @@ class ShearedSphere:
         return self.hertz.approach + self.shift**2 / (2 * self.hertz.radius)
 
     def pressure(self, x: ArrayLike, y: ArrayLike) -> Array:
-        """p (Pa) at ``(x, y)`` (m) from the sphere's lowest point, shapes broadcast."""
+        """Return p (Pa) at ``(x, y)`` (m) from the sphere's lowest point, shapes broadcast."""
         ahead = np.asarray(x, dtype=float) - self.shift
         return self.hertz.pressure(np.hypot(ahead, np.asarray(y, dtype=float)))
 
@@ -109,7 +110,8 @@ class ShearedSphere:
 
 
 def first_order_shift(hertz: Sphere, c0: float, tau: float, beta: float) -> float:
-    """Centroid of the pressure along x (m) under ``r = tau + beta p``, to first order in ``c0`` (1/Pa).
+    """Return the centroid of the pressure along x (m) under ``r = tau + beta p``, to first order in ``c0``
+    (1/Pa).
 
     The coupling displacement of the Hertz state, c0 x Q(r)/r^2, changes the pressure's moment by minus the
     work of a tilted punch's pressure, (2 E*/pi) x (a^2 - r^2)^(-1/2) per unit tilt, on it (Betti):
@@ -121,8 +123,8 @@ def first_order_shift(hertz: Sphere, c0: float, tau: float, beta: float) -> floa
 
 
 def coupling_by_quadrature(state: CoupledHertz, x: float, y: float) -> tuple[float, float]:
-    """Coupling displacement (m) at ``(x, y)`` (m) inside the contact and the quadrature's error (m), from the
-    kernel s/rho^2.
+    """Return the coupling displacement (m) at ``(x, y)`` (m) inside the contact and the quadrature's error
+    (m), from the kernel s/rho^2.
 
     In polar coordinates about the field point the source lies at (x - rho cos w, y - rho sin w), so s/rho^2
     rho = cos w; the traction along each ray has an elementary integral, of which the Hertz part is half an

@@ -42,7 +42,7 @@ def tangential(M: int, periodic: bool) -> tuple[Exact, Exact]:
 
 
 def _pairs(M: int, value: Any) -> Exact:
-    """Matrix over (field, source) of a function of their offset in elements."""
+    """Return the matrix over (field, source) of a function of their offset in elements."""
     table = {(i, j): value(float(i), float(j)) for i in range(1 - M, M) for j in range(1 - M, M)}
     matrix = np.empty((M * M, M * M), dtype=object)
     for n, m in np.ndindex(matrix.shape):
@@ -63,7 +63,7 @@ def _from_modes(M: int, what: str) -> Exact:
 
 
 def _mode(p: int, r: int, turn: tuple[Exact, Exact], M: int, what: str) -> Exact:
-    """One mode's share at one offset; a real field has no sine at the Nyquist frequency."""
+    """Return one mode's share at one offset; a real field has no sine at the Nyquist frequency."""
     squared = p * p + r * r
     if what == "normal":
         return M / mp.sqrt(squared) * turn[0]

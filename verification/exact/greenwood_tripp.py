@@ -102,7 +102,8 @@ class EffectivePressure:
         return float(3 * np.pi / 4 * np.sum(self.weights * self.r * self.p) / np.sum(self.weights * self.p))
 
     def at(self, r: ArrayLike) -> Array:
-        """Pressure (Pa) at ``r`` (m), any shape, by the panels' polynomials; zero beyond the last panel."""
+        """Return the pressure (Pa) at ``r`` (m), any shape, by the panels' polynomials; zero beyond the last
+        panel."""
         where = np.atleast_1d(np.asarray(r, dtype=float))
         panels = len(self.r) // ORDER
         end = float(np.sum(self.weights))
@@ -116,7 +117,7 @@ class EffectivePressure:
 
 
 def overlap_integral(z: Array, power: float) -> Array:
-    """Integral over t > 0 of t^power phi(z + t), phi the standard normal density; shape of ``z``.
+    """Return the integral over t > 0 of t^power phi(z + t), phi the standard normal density; shape of ``z``.
 
     In y = sqrt(t), which smooths half powers; cut where the density has fallen by exp(-40) below its largest.
 
@@ -132,8 +133,8 @@ def overlap_integral(z: Array, power: float) -> Array:
 
 
 def solve(sphere: RoughSphere, panels: int = 24) -> EffectivePressure:
-    """Newton's method for the separation at the nodes and d0 together; raises RuntimeError if it does not
-    settle.
+    """Solve by Newton's method for the separation at the nodes and d0 together; raises RuntimeError if it
+    does not settle.
     """
     a0, sigma = sphere.smooth.contact_radius, sphere.summit_rms
     end = np.sqrt(2) * a0 + np.sqrt(2 * sphere.radius * sigma * 12)
@@ -170,7 +171,8 @@ def solve(sphere: RoughSphere, panels: int = 24) -> EffectivePressure:
 
 
 def _first_guess(sphere: RoughSphere, r: Array) -> Array:
-    """Separation over sigma at the nodes, and d0: summits under Hertz' pressure, Hertz' gap beyond it."""
+    """Return the separation over sigma at the nodes, and d0: summits under Hertz' pressure, Hertz' gap beyond
+    it."""
     smooth = sphere.smooth
     table = np.linspace(10, -40, 2001)
     log_F = np.log(overlap_integral(table, 1.5))
@@ -182,8 +184,8 @@ def _first_guess(sphere: RoughSphere, r: Array) -> Array:
 
 
 def _displacement_matrix(end: float, panels: int) -> tuple[Array, Array, Array]:
-    """Nodes, weights, and the matrix of the integral of p(s) s/(s + r) K(m) ds at the nodes for node values
-    of p.
+    """Return the nodes, weights, and the matrix of the integral of p(s) s/(s + r) K(m) ds at the nodes for
+    node values of p.
     """
     nodes, base = leggauss(ORDER)
     edges = np.linspace(0, end, panels + 1)
@@ -207,13 +209,13 @@ def _displacement_matrix(end: float, panels: int) -> tuple[Array, Array, Array]:
 
 
 def _ring(s: Array, r: Array) -> Array:
-    """s/(s + r) K(m), with 1 - m = ((s - r)/(s + r))^2 free of cancellation."""
+    """Return s/(s + r) K(m), with 1 - m = ((s - r)/(s + r))^2 free of cancellation."""
     return np.asarray(s / (s + r) * ellipkm1(((s - r) / (s + r)) ** 2))
 
 
 def gaussian_summits(rms: float, correlation_length: float) -> tuple[float, float, float]:
-    """Summit rms height (m), density (1/m^2) and mean tip radius (m) of a Gaussian isotropic surface of the
-    ACF ``rms^2 exp(-2.3 (r/correlation_length)^2)`` (paper Eq. 9).
+    """Return the summit rms height (m), density (1/m^2) and mean tip radius (m) of a Gaussian isotropic
+    surface of the ACF ``rms^2 exp(-2.3 (r/correlation_length)^2)`` (paper Eq. 9).
 
     Spectral moments of a profile: m0 = rms^2, m2 = 2 c rms^2, m4 = 12 c^2 rms^2, c =
     2.3/correlation_length^2, so Nayak's alpha is 3. Nayak 1971; Bush, Gibson and Keogh 1976; McCool 1986:

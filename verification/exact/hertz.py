@@ -48,12 +48,13 @@ class Sphere:
         return self.contact_radius**2 / self.radius
 
     def pressure(self, r: ArrayLike) -> Array:
-        """p (Pa) at distance ``r`` (m) from the axis, any shape."""
+        """Return p (Pa) at distance ``r`` (m) from the axis, any shape."""
         rho = np.asarray(r, dtype=float) / self.contact_radius
         return self.peak_pressure * np.sqrt(np.maximum(0.0, 1 - rho**2))
 
     def displacement(self, r: ArrayLike) -> Array:
-        """Normal displacement of both bodies together (m), inside and outside: Johnson (3.41a), (3.42a)."""
+        """Return the normal displacement of both bodies together (m), inside and outside: Johnson (3.41a),
+        (3.42a)."""
         rho = np.asarray(r, dtype=float) / self.contact_radius
         outer = np.maximum(rho, 1.0)
         inside = np.pi / 2 * (2 - rho**2)
@@ -107,13 +108,13 @@ class Ellipse:
         return float(self.peak_pressure * a * b / self.modulus * elliprf(0, a**2, b**2))
 
     def pressure(self, x: ArrayLike, y: ArrayLike) -> Array:
-        """p (Pa) at ``(x, y)`` (m), shapes broadcast."""
+        """Return p (Pa) at ``(x, y)`` (m), shapes broadcast."""
         a, b = self.semi_axes
         inside = 1 - (np.asarray(x, dtype=float) / a) ** 2 - (np.asarray(y, dtype=float) / b) ** 2
         return self.peak_pressure * np.sqrt(np.maximum(0.0, inside))
 
     def displacement(self, x: ArrayLike, y: ArrayLike) -> Array:
-        """Normal displacement of both bodies together (m), inside and outside, shapes broadcast.
+        """Return the normal displacement of both bodies together (m), inside and outside, shapes broadcast.
 
         Potential of the ellipsoidal pressure (Johnson 3.35): the integral over w of
         (1 - x^2/(a^2+w) - y^2/(b^2+w)) / sqrt((a^2+w)(b^2+w)w) from the confocal ellipse through (x, y).

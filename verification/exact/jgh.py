@@ -37,23 +37,23 @@ APPROACH_UNCERTAINTY = 1e-5
 
 
 def full_contact_pressure(amplitude: float, wavelength: float, modulus: float) -> float:
-    """p* = sqrt(2) pi E* Delta/lambda (Pa)."""
+    """Return p* = sqrt(2) pi E* Delta/lambda (Pa)."""
     return float(np.sqrt(2) * np.pi * modulus * amplitude / wavelength)
 
 
 def light_area(load_ratio: ArrayLike) -> Array:
-    """Contact fraction at ``load_ratio`` = mean pressure/p* << 1: pi (3/(8 pi) ratio)^(2/3)."""
+    """Return the contact fraction at ``load_ratio`` = mean pressure/p* << 1: pi (3/(8 pi) ratio)^(2/3)."""
     return np.asarray(np.pi * (3 / (8 * np.pi) * np.asarray(load_ratio, dtype=float)) ** (2 / 3))
 
 
 def nearly_full_area(load_ratio: ArrayLike) -> Array:
-    """Contact fraction where 1 - ``load_ratio`` << 1: 1 - (3/(2 pi))(1 - ratio)."""
+    """Return the contact fraction where 1 - ``load_ratio`` << 1: 1 - (3/(2 pi))(1 - ratio)."""
     return np.asarray(1 - 3 / (2 * np.pi) * (1 - np.asarray(load_ratio, dtype=float)))
 
 
 def _cell(n: int) -> tuple[Array, Array]:
-    """Gap/Delta from first contact, and the symbol sqrt(2)/|(i, j)| that takes p/p* to a mean-free u/Delta;
-    ``(n, n)`` each.
+    """Return the gap/Delta from first contact, and the symbol sqrt(2)/|(i, j)| that takes p/p* to a mean-free
+    u/Delta; ``(n, n)`` each.
     """
     x = (np.arange(n) + 0.5) / n * np.pi
     i = np.arange(n)
@@ -67,8 +67,8 @@ def _displacement(symbol: Array, p: Array) -> Array:
 
 
 def relax(load_ratio: float, n: int, *, tolerance: float = 1e-9, limit: int = 4000) -> Array:
-    """Pressure over p* on ``n x n`` points of the quarter cell 0 < x, y < lambda/2, mean ``load_ratio``;
-    shape ``(n, n)``.
+    """Return the pressure over p* on ``n x n`` points of the quarter cell 0 < x, y < lambda/2, mean
+    ``load_ratio``; shape ``(n, n)``.
 
     Conjugate gradients on the contact set, exact symbol 2/(E* q) by cosine transform. Converged when the
     complementarity gap, mean of p (w - min w), is below ``tolerance`` times the elastic scale p* Delta;
@@ -97,8 +97,8 @@ def relax(load_ratio: float, n: int, *, tolerance: float = 1e-9, limit: int = 40
 
 
 def extrapolated(load_ratio: float, sizes: Sequence[int]) -> tuple[float, float, float]:
-    """Contact fraction, its standard error, and approach/Delta of the mean planes, in the limit of fine
-    grids.
+    """Return the contact fraction, its standard error, and approach/Delta of the mean planes, in the limit of
+    fine grids.
 
     The contact of n x n points counts elements cut by the edge as whole, order 1 in 1/n with scatter n^(-3/2)
     from how the edge falls on the points: a line in 1/n over many sizes, weighted by that scatter. The
@@ -120,6 +120,6 @@ def extrapolated(load_ratio: float, sizes: Sequence[int]) -> tuple[float, float,
 
 
 def _approach(p: Array) -> float:
-    """Pressure-weighted mean of u + gap over Delta, the gap counted from first contact."""
+    """Return the pressure-weighted mean of u + gap over Delta, the gap counted from first contact."""
     shape, symbol = _cell(len(p))
     return float(np.sum(p * (_displacement(symbol, p) + shape)) / np.sum(p))

@@ -20,7 +20,7 @@ ASPECTS = (1e-3, 1.0, 1e3)
 
 
 def random_points(seed: int, count: int) -> list[Point]:
-    """Lengths 1e-12 ... 1e12, aspect 1e-3 ... 1e3, offsets 0 ... 1e6 of every kind, either sign."""
+    """Return lengths 1e-12 ... 1e12, aspect 1e-3 ... 1e3, offsets 0 ... 1e6 of every kind, either sign."""
     rng = np.random.default_rng(seed)
     points = []
     for _ in range(count):
@@ -32,7 +32,7 @@ def random_points(seed: int, count: int) -> list[Point]:
 
 
 def _random_offset(rng: np.random.Generator) -> float:
-    """On the axis, inside, near the axis, near an edge, on the grid, or anywhere."""
+    """Draw a point on the axis, inside, near the axis, near an edge, on the grid, or anywhere."""
     kinds = (
         lambda: 0.0,
         lambda: rng.uniform(0, 0.5),
@@ -46,7 +46,8 @@ def _random_offset(rng: np.random.Generator) -> float:
 
 
 def awkward_points() -> Iterator[Point]:
-    """Centre, axes, edges, corners and close to them, diagonals, far ends; square and extreme aspects."""
+    """Yield centre, axes, edges, corners and close to them, diagonals, far ends; square and extreme
+    aspects."""
     below, above = np.nextafter(0.5, 0), np.nextafter(0.5, 1)
     offsets = (0.0, 1e-100, 1e-8, 0.24999, 0.25, 0.4999, below, 0.5, above, 0.5001,
                1.0, 2.5, 10.0, 1e3, FARTHEST)  # fmt: skip
@@ -55,7 +56,7 @@ def awkward_points() -> Iterator[Point]:
 
 
 def boundary_points() -> Iterator[Point]:
-    """Both sides of every change of formula or order, in x and in y, from the axis to the diagonal."""
+    """Yield both sides of every change of formula or order, in x and in y, from the axis to the diagonal."""
     for start, _, _ in shells():
         for offset in (np.nextafter(start, 0) / 2, start / 2):
             for other, aspect in product((0.0, 1e-8, 0.5, 2.0, 0.99 * offset, offset), ASPECTS):

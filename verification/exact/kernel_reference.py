@@ -29,7 +29,8 @@ CORNERS = ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))
 
 
 def normal(x: float, y: float, dx: float, dy: float) -> Any:
-    """Integral of 1/rho to 50 digits (an mpf); arguments as in ``refimpl.kernels.normal_integral``.
+    """Return the integral of 1/rho to 50 digits (an mpf); arguments as in
+    ``refimpl.kernels.normal_integral``.
 
     >>> with mp.workdps(DIGITS):
     ...     mp.almosteq(normal(0.0, 0.0, 1.0, 1.0), 4 * mp.asinh(1))
@@ -39,7 +40,8 @@ def normal(x: float, y: float, dx: float, dy: float) -> Any:
 
 
 def tangential(x: float, y: float, dx: float, dy: float) -> Any:
-    """Integral of s/rho^2 to 50 digits (an mpf); arguments as in ``refimpl.kernels.tangential_integral``."""
+    """Return the integral of s/rho^2 to 50 digits (an mpf); arguments as in
+    ``refimpl.kernels.tangential_integral``."""
     return mp.mpf(0) if x == 0 else _corner_sum(_cerruti, x, y, dx, dy)
 
 
@@ -65,7 +67,7 @@ def _corner_sum(corner: Corner, x: float, y: float, dx: float, dy: float) -> Any
 
 
 def normal_by_transform(x: float, y: float, dx: float, dy: float, digits: int = 20) -> Any:
-    """Integral of 1/rho from error functions alone, to about that many digits (an mpf)."""
+    """Return the integral of 1/rho from error functions alone, to about that many digits (an mpf)."""
 
     def integrand(u: Any) -> Any:
         return 2 / mp.sqrt(mp.pi) * _gauss_factor(u, x, dx) * _gauss_factor(u, y, dy)
@@ -74,7 +76,8 @@ def normal_by_transform(x: float, y: float, dx: float, dy: float, digits: int = 
 
 
 def tangential_by_transform(x: float, y: float, dx: float, dy: float, digits: int = 20) -> Any:
-    """Integral of s/rho^2, for ``x > 0``, from exponentials and an error function; digits as above."""
+    """Return the integral of s/rho^2, for ``x > 0``, from exponentials and an error function; digits as
+    above."""
 
     def integrand(u: Any) -> Any:
         near = mp.mpf(x) - mp.mpf(dx) / 2
@@ -86,7 +89,7 @@ def tangential_by_transform(x: float, y: float, dx: float, dy: float, digits: in
 
 
 def _gauss_factor(u: Any, offset: float, edge: float) -> Any:
-    """Integral of exp(-s^2 u^2) over one edge, seen from ``offset``."""
+    """Return the integral of exp(-s^2 u^2) over one edge, seen from ``offset``."""
     near, far = abs(mp.mpf(offset)) - mp.mpf(edge) / 2, abs(mp.mpf(offset)) + mp.mpf(edge) / 2
     ends = mp.erf(u * far) - mp.erf(u * near) if near < 0 else mp.erfc(u * near) - mp.erfc(u * far)
     return mp.sqrt(mp.pi) / (2 * u) * ends
@@ -95,7 +98,7 @@ def _gauss_factor(u: Any, offset: float, edge: float) -> Any:
 def _over_the_half_line(
     integrand: Callable[[Any], Any], x: float, y: float, dx: float, dy: float, digits: int
 ) -> Any:
-    """Integral over u > 0 by the trapezoidal rule in log u.
+    """Return the integral over u > 0 by the trapezoidal rule in log u.
 
     Analytic for ``|Im log u| < pi/4``, hence an error like exp(-pi^2 / 2h). The tails left out, below
     ``dx dy u`` and above ``pi / u``, are small against ``dx dy / extent`` and against the offset x.
@@ -111,7 +114,7 @@ def _over_the_half_line(
 
 
 def normal_enclosure(x: float, y: float, dx: float, dy: float) -> Any:
-    """An arb that contains the integral of 1/rho, with a relative radius below 1e-20.
+    """Return an arb that contains the integral of 1/rho, with a relative radius below 1e-20.
 
     From each corner the signed rectangle to the field point is, in polar coordinates about the latter, the
     integral of the distance ``X sec(theta)`` to its sides. Raises ``Unavailable`` without python-flint.
@@ -134,7 +137,7 @@ def normal_enclosure(x: float, y: float, dx: float, dy: float) -> Any:
 
 
 def tangential_enclosure(x: float, y: float, dx: float, dy: float) -> Any:
-    """An arb that contains the integral of s/rho^2, for ``x > 0``, with a relative radius below 1e-20.
+    """Return an arb that contains the integral of s/rho^2, for ``x > 0``, with a relative radius below 1e-20.
 
     ``s/rho^2 = Re 1/z`` with ``z = s + it``, whose antiderivative over s and t is ``-i z (log z - 1)``. The
     branch cut is kept away by moving an end at ``s < 0`` to ``-s``, between which the integrand is odd.
@@ -149,7 +152,7 @@ def tangential_enclosure(x: float, y: float, dx: float, dy: float) -> Any:
 
 
 def _enclose(corner: Corner, x: float, y: float, dx: float, dy: float) -> Any:
-    """Ball arithmetic over the corners, in doubled precision until the ball is small."""
+    """Run ball arithmetic over the corners, in doubled precision until the ball is small."""
     flint = arb()
     bits = 128
     while True:
@@ -164,7 +167,8 @@ def _enclose(corner: Corner, x: float, y: float, dx: float, dy: float) -> Any:
 
 
 def relative_error(value: float, exact: Any) -> float:
-    """``|value - exact| / |exact|`` in the reference's precision; where 0 is exact nothing else will do."""
+    """Return ``|value - exact| / |exact|`` in the reference's precision; where 0 is exact nothing else will
+    do."""
     if exact == 0:
         return 0.0 if value == 0 else np.inf
     with mp.workdps(DIGITS):
@@ -172,7 +176,8 @@ def relative_error(value: float, exact: Any) -> float:
 
 
 def relative_distance(value: float, ball: Any) -> float:
-    """Upper bound on the relative error of ``value``, whatever point of the ball is the exact one."""
+    """Return the upper bound on the relative error of ``value``, whatever point of the ball is the exact
+    one."""
     flint = arb()
     with flint.ctx.workprec(256):
         error = abs((flint.arb(value) - ball) / ball)

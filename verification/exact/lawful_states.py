@@ -40,7 +40,7 @@ class Count(NamedTuple):
 
 
 def scene(seed: int, tau: float, *, soft_below: bool = True) -> rf.Scene:
-    """A flat on random heights, tau over the mean pressure given."""
+    """Return a flat on random heights, tau over the mean pressure given."""
     rng = np.random.default_rng(seed)
     z = 10.0 ** rng.uniform(-8, -6) * rng.standard_normal((M, M))
     upper, lower = (STEEL, POLYMER) if soft_below else (POLYMER, STEEL)
@@ -55,7 +55,7 @@ def scene(seed: int, tau: float, *, soft_below: bool = True) -> rf.Scene:
 
 
 def lawful_states(scene: rf.Scene) -> list[NDArray[np.bool_]]:
-    """All lawful contact sets, each as ``(M, M)``."""
+    """Return all lawful contact sets, each as ``(M, M)``."""
     grid, pair = scene.grid(M), scene.materials
     a = pair.normal_compliance * normal_matrix(grid)
     c = pair.shear_compliance * shear_matrix(grid, scene.sliding_direction)
@@ -71,7 +71,7 @@ def lawful_states(scene: rf.Scene) -> list[NDArray[np.bool_]]:
 
 
 def _is_lawful(G: Array, shear: Array, h: Array, target: float, inside: NDArray[np.bool_]) -> bool:
-    """Whether the bordered equations on a set give pressures and gaps of the right sign."""
+    """Return whether the bordered equations on a set give pressures and gaps of the right sign."""
     index = np.flatnonzero(inside)
     n = len(index)
     bordered = np.zeros((n + 1, n + 1))
@@ -84,7 +84,8 @@ def _is_lawful(G: Array, shear: Array, h: Array, target: float, inside: NDArray[
 
 
 def count(tau: float, scenes: int = SCENES) -> Count:
-    """Lawful states of seeded scenes at one tau, and whether the solvers' good states are among them."""
+    """Count the lawful states of seeded scenes at one tau, and whether the solvers' good states are among
+    them."""
     numbers, wrong = list[int](), 0
     statuses: dict[str, dict[str, int]] = {method: {} for method in SOLVERS}
     for seed in range(scenes):

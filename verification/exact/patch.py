@@ -38,7 +38,7 @@ class Patch:
     modulus: float
 
     def displacement(self, x: ArrayLike, y: ArrayLike) -> Array:
-        """Normal displacement of both bodies together (m) at ``(x, y)`` (m), shapes broadcast."""
+        """Return the normal displacement of both bodies together (m) at ``(x, y)`` (m), shapes broadcast."""
         x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
         integral = normal_integral(x, y, self.width / 2, self.height / 2)
         return self.pressure / (np.pi * self.modulus) * integral
@@ -56,7 +56,7 @@ class Patch:
 
 
 def displacement_by_quadrature(patch: Patch, x: float, y: float) -> tuple[float, float]:
-    """Displacement (m) at ``(x, y)`` (m) and the quadrature's error (m), from the definition.
+    """Return the displacement (m) at ``(x, y)`` (m) and the quadrature's error (m), from the definition.
 
     In polar coordinates about the field point 1/rho cancels the Jacobian: the chord of the patch along each
     ray remains, smooth between the directions of the corners.
@@ -67,7 +67,7 @@ def displacement_by_quadrature(patch: Patch, x: float, y: float) -> tuple[float,
         low, high = -mp.mpf(patch.height) / 2 - py, mp.mpf(patch.height) / 2 - py
 
         def ray(angle: mp.mpf) -> mp.mpf:
-            """Length of the patch along the ray at ``angle``."""
+            """Return the length of the patch along the ray at ``angle``."""
             c, s = mp.cos(angle), mp.sin(angle)
             enter, leave = mp.mpf(0), mp.inf
             for direction, near, far in ((c, left, right), (s, low, high)):

@@ -54,7 +54,7 @@ class PowerLaw:
         return self.load / (np.pi * self.contact_radius**2)
 
     def pressure(self, r: ArrayLike) -> Array:
-        """p (Pa) at distance ``r`` (m), any shape; infinite on the axis when the exponent is 1."""
+        """Return p (Pa) at distance ``r`` (m), any shape; infinite on the axis when the exponent is 1."""
         n, a = self.exponent, self.contact_radius
         rho2 = np.minimum(1.0, (np.asarray(r, dtype=float) / a) ** 2)
         shape = np.sqrt(1 - rho2) * hyp2f1(1 - n / 2, 1, 1.5, 1 - rho2)
@@ -100,13 +100,13 @@ class Cone:
         return np.pi / 2 * self.slope * self.contact_radius
 
     def pressure(self, r: ArrayLike) -> Array:
-        """p (Pa) at distance ``r > 0`` (m): mean pressure times arccosh(a/r), infinite on the axis."""
+        """Return p (Pa) at distance ``r > 0`` (m): mean pressure times arccosh(a/r), infinite on the axis."""
         return self.mean_pressure * np.arccosh(
             np.maximum(1.0, self.contact_radius / np.asarray(r, dtype=float))
         )
 
     def displacement(self, r: ArrayLike) -> Array:
-        """Normal displacement (m) inside and outside."""
+        """Return the normal displacement (m) inside and outside."""
         rho = np.asarray(r, dtype=float) / self.contact_radius
         outer = np.maximum(rho, 1.0)
         # sqrt(rho^2 - 1) - rho = -1/(sqrt(rho^2 - 1) + rho) without the cancellation far away

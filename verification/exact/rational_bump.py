@@ -33,7 +33,7 @@ class RationalBump:
 
     @classmethod
     def centred_at(cls, c: float, b: float, t0: float) -> RationalBump:
-        """The strip reaching arc length 1 to both sides of the boundary point w(t0)."""
+        """Return the strip reaching arc length 1 to both sides of the boundary point w(t0)."""
         bare = cls(c, b, t0, t0, t0)
 
         def end(direction: int) -> float:
@@ -46,27 +46,27 @@ class RationalBump:
         return cls(c, b, t0, end(-1), end(+1))
 
     def map(self, t: complex) -> complex:
-        """w(zeta)."""
+        """Return w(zeta)."""
         return t + self.c / (t + 1j * self.b)
 
     def slope_of_map(self, t: complex) -> complex:
-        """w'(zeta)."""
+        """Return w'(zeta)."""
         return 1.0 - self.c / (t + 1j * self.b) ** 2
 
     def parameter(self, x: float) -> float:
-        """t of the boundary point with abscissa x from the strip's centre."""
+        """Return t of the boundary point with abscissa x from the strip's centre."""
         target = x + self.map(self.t0).real
         span = abs(self.c) / self.b + 1.0
         return float(brentq(lambda t: self.map(t).real - target, target - span, target + span, xtol=1e-14))
 
     def height(self, x: Array) -> Array:
-        """Profile y(x) relative to the strip's centre."""
+        """Return the profile y(x) relative to the strip's centre."""
         base = self.map(self.t0).imag
         flat = [self.map(self.parameter(value)).imag - base for value in np.ravel(x)]
         return np.array(flat).reshape(np.shape(x))
 
     def potential(self, t: float) -> complex:
-        """phi(t) on the boundary, up to a constant: the Cauchy integral of f less the pole's part."""
+        """Return phi(t) on the boundary, up to a constant: the Cauchy integral of f less the pole's part."""
         pole = -1j * self.b
         mirror = pole.conjugate()
         gain = self.c / (mirror - pole) ** 2
@@ -83,19 +83,21 @@ class RationalBump:
         return self._cauchy(t) - self.c * complex(real, imag) / (t - pole)
 
     def displacement(self, x: float, nu: float) -> complex:
-        """u_x + i u_y of the boundary point at abscissa x, up to a constant; units of pressure length / E."""
+        """Return u_x + i u_y of the boundary point at abscissa x, up to a constant; units of pressure length
+        / E."""
         kappa, shear = 3.0 - 4.0 * nu, 0.5 / (1.0 + nu)
         t = self.parameter(x)
         pressed = self.map(min(max(t, self.t1), self.t2)) - self.map(self.t1)
         return ((kappa + 1.0) * self.potential(t) + pressed) / (2.0 * shear)
 
     def relative(self, x: Array, nu: float) -> Array:
-        """u_y(x) - u_y(0) at abscissae x from the strip's centre."""
+        """Return u_y(x) - u_y(0) at abscissae x from the strip's centre."""
         centre = self.displacement(0.0, nu).imag
         return np.array([self.displacement(float(value), nu).imag - centre for value in x])
 
     def _cauchy(self, t: float) -> complex:
-        """(1 / 2 pi i) times the integral of w'(s) ln(s - t) over the strip, from above the boundary."""
+        """Return (1 / 2 pi i) times the integral of w'(s) ln(s - t) over the strip, from above the
+        boundary."""
         cut = min(max(t, self.t1), self.t2)
 
         def part(component: str, lower: float, upper: float) -> float:
@@ -117,7 +119,8 @@ class RationalBump:
         return (complex(real, imag) - 1j * np.pi * passed) / (2j * np.pi)
 
     def _cauchy_slope(self, zeta: complex) -> complex:
-        """-(1 / 2 pi i) times the integral of w'(s) / (s - zeta) over the strip, zeta inside the body."""
+        """Return -(1 / 2 pi i) times the integral of w'(s) / (s - zeta) over the strip, zeta inside the
+        body."""
         nodes, weights = np.polynomial.legendre.leggauss(60)  # to rounding: zeta is b away from the strip
         s = (self.t1 + self.t2) / 2 + (self.t2 - self.t1) / 2 * nodes
         values = np.array([self.slope_of_map(float(v)) / (v - zeta) for v in s])

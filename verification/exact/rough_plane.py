@@ -28,7 +28,7 @@ KAPPA_PUBLISHED = (2.0, 2.6)
 
 
 def persson_area(reduced_pressure: ArrayLike) -> Array:
-    """A/A0 of Persson's theory at ``reduced_pressure`` p/(E* h'), any shape.
+    """Return A/A0 of Persson's theory at ``reduced_pressure`` p/(E* h'), any shape.
 
     >>> bool(np.isclose(persson_area(1e-6) / 1e-6, KAPPA_PERSSON))
     True
@@ -87,14 +87,14 @@ def greenwood_williamson_area(
 
 
 def kappa(area_fraction: ArrayLike, pressure: ArrayLike, modulus: float, rms_gradient: float) -> Array:
-    """Secant slope A/A0 E* h'/p, shapes broadcast; ``pressure`` and ``modulus`` in Pa."""
+    """Return the secant slope A/A0 E* h'/p, shapes broadcast; ``pressure`` and ``modulus`` in Pa."""
     fraction, p = np.asarray(area_fraction, dtype=float), np.asarray(pressure, dtype=float)
     return np.asarray(fraction * modulus * rms_gradient / p)
 
 
 def spectral_rms_gradient(heights: Array, side: float) -> float:
-    """Root mean square gradient (m/m) of a periodic surface ``(M, M)`` (m) over a square of ``side`` (m), by
-    Parseval.
+    """Return the root mean square gradient (m/m) of a periodic surface ``(M, M)`` (m) over a square of
+    ``side`` (m), by Parseval.
 
     >>> x = np.arange(8) / 8
     >>> wave = np.cos(2 * np.pi * x)[:, None] * np.ones(8)

@@ -37,7 +37,7 @@ UNCERTAINTY = 1e-14
 
 
 def dundurs(lower: tuple[float, float], upper: tuple[float, float]) -> tuple[float, float]:
-    """Reduced modulus E* (Pa) and coupling d of two bodies given as ``(E in Pa, nu)``.
+    """Return the reduced modulus E* (Pa) and coupling d of two bodies given as ``(E in Pa, nu)``.
 
     >>> dundurs((1.0, 0.3), (1.0, 0.3))[1], dundurs((1.0, 0.0), (1e30, 0.3))
     (0.0, (1.0, 0.5))
@@ -85,7 +85,7 @@ class SlidingCylinder:
         return -2 * self.radius * self.coupling * self.tau / self.modulus
 
     def pressure(self, x: ArrayLike) -> Array:
-        """p (Pa) at ``x`` (m) from the lowest line, any shape."""
+        """Return p (Pa) at ``x`` (m) from the lowest line, any shape."""
         g, xi = self.exponent, np.asarray(x, dtype=float) - self.centre
         behind, ahead = np.maximum(0.0, self.half_width + xi), np.maximum(0.0, self.half_width - xi)
         height = self.modulus / (2 * self.radius) * np.sin(np.pi * g)

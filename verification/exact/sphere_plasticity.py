@@ -22,12 +22,14 @@ class Loaded(NamedTuple):
 
 
 def hardness_factor(nu: float) -> float:
-    """Maximum pressure at first yield over the hardness, ``K = 0.454 + 0.41 nu`` (Kogut and Etsion)."""
+    """Return the maximum pressure at first yield over the hardness, ``K = 0.454 + 0.41 nu`` (Kogut and
+    Etsion)."""
     return 0.454 + 0.41 * nu
 
 
 def yield_factor(nu: float) -> float:
-    """Maximum pressure at first yield over the yield stress, ``C = 1.295 exp(0.736 nu)`` (Jackson, Green)."""
+    """Return the maximum pressure at first yield over the yield stress, ``C = 1.295 exp(0.736 nu)`` (Jackson,
+    Green)."""
     return 1.295 * math.exp(0.736 * nu)
 
 

@@ -16,32 +16,36 @@ from refimpl.grid import Array, Grid
 
 
 def normal(x: Array, y: Array, dx: float, dy: float) -> Array:
-    """``I[1/rho]`` of a ``dx`` by ``dy`` element, seen from ``(x, y)`` (m); not on its edges' lines."""
+    """Return ``I[1/rho]`` of a ``dx`` by ``dy`` element, seen from ``(x, y)`` (m); not on its edges'
+    lines."""
     return _corners(lambda X, Y: X * np.arcsinh(Y / np.abs(X)) + Y * np.arcsinh(X / np.abs(Y)), x, y, dx, dy)
 
 
 def tangential(x: Array, y: Array, dx: float, dy: float) -> Array:
-    """``I[x/rho^2]`` of a ``dx`` by ``dy`` element, seen from ``(x, y)`` (m); not on its edges' lines."""
+    """Return ``I[x/rho^2]`` of a ``dx`` by ``dy`` element, seen from ``(x, y)`` (m); not on its edges'
+    lines."""
     return _corners(lambda X, Y: Y * np.log(X * X + Y * Y) / 2 + X * np.arctan(Y / X), x, y, dx, dy)
 
 
 def normal_matrix(grid: Grid) -> Array:
-    """``I[1/rho]`` between all pairs of elements (m), field by row."""
+    """Return ``I[1/rho]`` between all pairs of elements (m), field by row."""
     return normal(*_pairs(grid), *grid.spacings)
 
 
 def shear_matrix(grid: Grid, direction: float) -> Array:
-    """``I[s/rho^2]`` between all pairs (m), ``s`` along ``direction`` (rad) from source to field."""
+    """Return ``I[s/rho^2]`` between all pairs (m), ``s`` along ``direction`` (rad) from source to field."""
     return _along(direction, *_pairs(grid), *grid.spacings)
 
 
 def normal_offsets(shape: tuple[int, int], edges: tuple[float, float] = (1.0, 1.0)) -> Array:
-    """``I[1/rho]`` of an element of those edges at offsets ``1 - M ... M - 1`` elements along x and y."""
+    """Return ``I[1/rho]`` of an element of those edges at offsets ``1 - M ... M - 1`` elements along x and
+    y."""
     return normal(*_offsets(shape, edges), *edges)
 
 
 def shear_offsets(shape: tuple[int, int], direction: float, edges: tuple[float, float] = (1.0, 1.0)) -> Array:
-    """``I[s/rho^2]`` of an element of those edges at offsets ``1 - M ... M - 1`` elements along x and y."""
+    """Return ``I[s/rho^2]`` of an element of those edges at offsets ``1 - M ... M - 1`` elements along x and
+    y."""
     return _along(direction, *_offsets(shape, edges), *edges)
 
 
@@ -55,12 +59,12 @@ def _offsets(shape: tuple[int, int], edges: tuple[float, float]) -> tuple[Array,
 
 
 def _pairs(grid: Grid) -> tuple[Array, Array]:
-    """Offsets along x and y between all element centres, field by row."""
+    """Return the offsets along x and y between all element centres, field by row."""
     x, y = (axis.ravel() for axis in np.meshgrid(grid.x, grid.y, indexing="ij"))
     return x[:, None] - x[None, :], y[:, None] - y[None, :]
 
 
 def _corners(corner: Callable[[Array, Array], Array], x: Array, y: Array, dx: float, dy: float) -> Array:
-    """Second difference of an antiderivative over the corners of an element at an offset."""
+    """Return the second difference of an antiderivative over the corners of an element at an offset."""
     left, right, below, above = x - dx / 2, x + dx / 2, y - dy / 2, y + dy / 2
     return np.asarray(corner(right, above) - corner(right, below) - corner(left, above) + corner(left, below))

@@ -64,7 +64,7 @@ class Wave:
         return float(self.amplitude * self._sin2 * (1 - np.log(self._sin2)))
 
     def pressure(self, x: ArrayLike) -> Array:
-        """p (Pa) at ``x`` (m) from a crest, any shape."""
+        """Return p (Pa) at ``x`` (m) from a crest, any shape."""
         psi = np.pi * np.asarray(x, dtype=float) / self.wavelength
         if self.mean_pressure >= self.full_contact_pressure:
             return self.mean_pressure + self.full_contact_pressure * np.cos(2 * psi)
@@ -73,8 +73,8 @@ class Wave:
 
 
 def displacement_by_quadrature(wave: Wave, x: float) -> tuple[float, float]:
-    """Mean-free displacement (m) of ``wave``'s pressure at ``x`` (m) and the quadrature's error (m); partial
-    contact.
+    """Return the mean-free displacement (m) of ``wave``'s pressure at ``x`` (m) and the quadrature's error
+    (m); partial contact.
 
     The line load's periodic kernel -(2/(pi E*)) ln|2 sin(pi s/lambda)|, written anew in mpmath from the
     pressure formula.

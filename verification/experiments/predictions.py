@@ -48,19 +48,19 @@ def press(scene: rf.Scene, load: float) -> rf.Solution:
 
 
 def increment(scene: rf.Scene, first: float, load: float) -> Stated:
-    """Approach under a load beyond that under the first one (m)."""
+    """Return the approach under a load beyond that under the first one (m)."""
     low, high = press(scene, first), press(scene, load)
     return high.approach - low.approach, error_bound(high, "approach") + error_bound(low, "approach")
 
 
 def ratio(scene: rf.Scene, first: float, loads: tuple[float, float]) -> Stated:
-    """Increment at the second load over that at the first one."""
+    """Return the increment at the second load over that at the first one."""
     (small, off), (large, more) = (increment(scene, first, load) for load in loads)
     return large / small, large / small * (off / small + more / large)
 
 
 def exponent(scene: rf.Scene, loads: Sequence[float]) -> Stated:
-    """Slope of log mu over log load, by least squares."""
+    """Return the slope of log mu over log load, by least squares."""
     name = "friction_coefficient_corrected"
     found = [press(scene, load) for load in loads]
     x = np.log(loads) - np.mean(np.log(loads))

@@ -184,7 +184,7 @@ class Case:
         error: float | None = None,
         data: object = None,
     ) -> Result:
-        """The case with a verdict; the numbers stay None where nothing was measured."""
+        """Return the case with a verdict; the numbers stay None where nothing was measured."""
         reference = None if measured is None or measured.reference is None else float(measured.reference)
         return Result(
             id=self.id,
@@ -208,7 +208,7 @@ class Case:
 
 
 def error_of(metric: Metric, tolerance: float, measured: Measured) -> float:
-    """The error of a measurement under a metric.
+    """Return the error of a measurement under a metric.
 
     Raises ValueError when the numbers cannot be judged: not finite, no reference where one is needed (or one
     where it would be ignored), a relative error against zero, or a reference less certain than the tolerance.
@@ -238,7 +238,7 @@ def error_of(metric: Metric, tolerance: float, measured: Measured) -> float:
 
 
 def jsonable(item: object) -> object:
-    """`item` as JSON can hold it: arrays to lists, NaN and inf to None; series have 6 digits, maps 3.
+    """Return `item` as JSON can hold it: arrays to lists, NaN and inf to None; series have 6 digits, maps 3.
 
     A map is a list of lists with at least `MAP_SIZE` numbers.
     Raises TypeError for anything that is not a number, a text, a mapping or a series of such.
@@ -289,6 +289,7 @@ def _finite(name: str, number: Any) -> float:
 
 
 def _place(failure: BaseException) -> str:
-    """File name and line where it was raised; no directories, so results do not depend on the machine."""
+    """Return the file name and line where it was raised; no directories, so results do not depend on the
+    machine."""
     frames = traceback.extract_tb(failure.__traceback__)
     return f"{frames[-1].filename.rsplit('/', 1)[-1]}:{frames[-1].lineno}" if frames else "no traceback"

@@ -101,7 +101,7 @@ def family(
 
 
 def _imported_anew(old: Case, new: Case) -> bool:
-    """Whether the same line of the same module was compiled again, as `importlib.reload` does.
+    """Return whether the same line of the same module was compiled again, as `importlib.reload` does.
 
     One compiled line that declares twice is a loop whose ids are not all different.
     """
@@ -110,7 +110,7 @@ def _imported_anew(old: Case, new: Case) -> bool:
 
 
 def load(package: str = CASES_PACKAGE) -> tuple[Case, ...]:
-    """All cases declared below `package`, by module and line, whatever was imported before.
+    """Return all cases declared below `package`, by module and line, whatever was imported before.
 
     A module that cannot be imported stops the run: its cases would otherwise be missing without a word.
     """
@@ -122,7 +122,7 @@ def load(package: str = CASES_PACKAGE) -> tuple[Case, ...]:
 
 
 def select(cases: Iterable[Case], tier: Tier, globs: Iterable[str] = ()) -> tuple[Case, ...]:
-    """The cases of a tier whose id matches any of `globs` (all, when there are none); order kept.
+    """Return the cases of a tier whose id matches any of `globs` (all, when there are none); order kept.
 
     Raises LookupError when nothing is left, or when one of the globs matches no case: an empty selection must
     not look like a run without failures.
@@ -137,5 +137,5 @@ def select(cases: Iterable[Case], tier: Tier, globs: Iterable[str] = ()) -> tupl
 
 
 def find(id: str) -> Case:
-    """The declared case of this id; KeyError when no module imported so far declares it."""
+    """Return the declared case of this id; KeyError when no module imported so far declares it."""
     return _declared[id]

@@ -39,7 +39,7 @@ class Run:
         return 0 if not bad and self.counts[Status.PASS] else 1
 
     def document(self) -> dict[str, object]:
-        """The result file: the cases, and errata and provenance beside them."""
+        """Return the result file: the cases, and errata and provenance beside them."""
         return {
             "format": FORMAT,
             "tier": self.tier.value,
@@ -72,6 +72,7 @@ def run(
 
 
 def errata(results: Iterable[Result]) -> list[dict[str, object]]:
-    """The errata that the results hold evidence for: a case is about one when its data has all of ERRATUM."""
+    """Return the errata that the results hold evidence for: a case is about one when its data has all of
+    ERRATUM."""
     about = [r for r in results if set(ERRATUM) <= set(r.data)]
     return [{"case": r.id, "status": r.status, **{name: r.data[name] for name in ERRATUM}} for r in about]

@@ -14,7 +14,7 @@ THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Processes started in the block have one; the environment is put back as it was.
+    """Give processes started in the block one thread; the environment is put back as it was.
 
     >>> import os
     >>> before = dict(os.environ)
@@ -38,7 +38,8 @@ def one_thread() -> Iterator[None]:
 
 @contextmanager
 def limited_to_one_thread() -> Iterator[None]:
-    """In the block, this process has one thread, whatever its environment was when libraries were imported.
+    """Limit this process to one thread in the block, whatever its environment was when libraries were
+    imported.
 
     BLAS is limited by its own interface; transforms read the environment at every call. Raises RuntimeError
     where a library of BLAS or OpenMP does not take the limit.

@@ -27,7 +27,7 @@ def judged(
     reference_uncertainty: float = 0.0,
     unit: str = "",
 ) -> Measured:
-    """A measurement with its verdict in ``data["verdict"]``, and the sentence as its note."""
+    """Return a measurement with its verdict in ``data["verdict"]``, and the sentence as its note."""
     return Measured(
         value=value,
         reference=reference,

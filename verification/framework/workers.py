@@ -26,7 +26,7 @@ class Worker:
         self._pool = _process()
 
     def run(self, case: Case) -> Result:
-        """The case's verdict; never raises for what the case does."""
+        """Return the case's verdict; never raises for what the case does."""
         start = time.perf_counter()
         try:
             with interrupts_blocked():
@@ -44,7 +44,7 @@ class Worker:
 
 
 def run_all(cases: Sequence[Case], jobs: int, tick: Callable[[Result], None]) -> list[Result]:
-    """Results in the order of `cases`, from `jobs` workers; `tick` sees each as it is finished.
+    """Return the results in the order of `cases`, from `jobs` workers; `tick` sees each as it is finished.
 
     A worker takes the cases of a whole module, in their order, since those may share a cached solution.
     """
@@ -75,7 +75,7 @@ def run_all(cases: Sequence[Case], jobs: int, tick: Callable[[Result], None]) ->
 
 
 def _drain(lines: queue.SimpleQueue[list[Case]], stopped: threading.Event) -> Iterator[Case]:
-    """Cases, line after line, until no line is left or the event is set."""
+    """Yield the cases, line after line, until no line is left or the event is set."""
     while True:
         try:
             line = lines.get_nowait()
@@ -94,11 +94,11 @@ def kill_workers(others: set[BaseProcess]) -> None:
 
 
 def _process() -> ProcessPoolExecutor:
-    """A fresh interpreter ('spawn'): nothing is inherited but the environment and the module path."""
+    """Start fresh interpreters ('spawn'): nothing is inherited but the environment and the module path."""
     return ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn"))
 
 
 def _run_in_worker(module: str, case_id: str) -> Result:
-    """In the worker, find the case again by module and id: its function need not be picklable."""
+    """Find the case again in the worker, by module and id: its function need not be picklable."""
     importlib.import_module(module)
     return registry.find(case_id).run()

@@ -20,7 +20,8 @@ _SHOWN = 40  # characters of the name of a target in that of its temporary file
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """A temporary path beside `path`, of the same suffix, that takes its place when the block ends well.
+    """Yield a temporary path beside `path`, of the same suffix, that takes its place when the block ends
+    well.
 
     The file appears in one step; after an error the old file, if any, is still there. What is no regular
     file, a device or a pipe, is never replaced: the finished file is copied to it. Nor is a link replaced,
@@ -51,7 +52,7 @@ def _open_now(path: str, flags: int) -> int:
 
 
 def is_stream(path: Path) -> bool:
-    """True if writing there appends, as to a device or a pipe, and replaces nothing."""
+    """Return True if writing there appends, as to a device or a pipe, and replaces nothing."""
     return os.path.exists(path) and not os.path.isfile(path)  # no error for long names
 
 
@@ -66,7 +67,7 @@ def try_out(path: Path) -> None:
 
 @contextmanager
 def _temporary(path: Path) -> Iterator[tuple[Path, Path]]:
-    """The name of a new file, and the file that a link leads to, beside which it is.
+    """Yield the name of a new file, and the file that a link leads to, beside which it is.
 
     It has the suffix of the path that was given, and is gone afterwards.
     """
@@ -87,7 +88,8 @@ def write_text(text: str, path: Path) -> None:
 
 @contextmanager
 def appending(path: Path) -> Iterator[TextIO]:
-    """A file of lines, open for more of them; a last one that was cut short by a kill is ended first."""
+    """Yield a file of lines, open for more of them; a last one that was cut short by a kill is ended
+    first."""
     cut = path.exists() and not path.read_bytes().endswith(b"\n")
     with path.open("a", encoding="utf-8") as lines:
         if cut:
@@ -96,7 +98,7 @@ def appending(path: Path) -> Iterator[TextIO]:
 
 
 def to_json(document: object, *, ascii_only: bool = False) -> str:
-    """JSON text with a final newline; NaN and infinity, which JSON does not have, raise ValueError.
+    """Return JSON text with a final newline; NaN and infinity, which JSON does not have, raise ValueError.
 
     What is not printable, or is a byte of a file name that is no UTF-8, is escaped.
 

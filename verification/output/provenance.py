@@ -30,7 +30,8 @@ def or_none(ask: Callable[[], T]) -> T | None:
 
 
 def versions() -> dict[str, str | None]:
-    """Version of Python, of this package and of each dependency; None for one that is not found."""
+    """Return the version of Python, of this package and of each dependency; None for one that is not
+    found."""
     from refimpl import __version__  # here and not above: --help is quick
 
     found: dict[str, str | None] = {"python": platform.python_version(), DISTRIBUTION: __version__}
@@ -40,7 +41,8 @@ def versions() -> dict[str, str | None]:
 
 
 def revision() -> dict[str, str | bool | None]:
-    """The checkout's commit and whether its tree is `dirty`; `commit` is None for an installed package.
+    """Return the checkout's commit and whether its tree is `dirty`; `commit` is None for an installed
+    package.
 
     Only a checkout that this file is part of counts, not whatever repository lies around an environment.
     """
@@ -65,7 +67,7 @@ def is_known(commit: str) -> bool:
 
 
 def machine() -> dict[str, str | int | None]:
-    """Processor model, cores this process may use, and platform."""
+    """Return the processor model, cores this process may use, and platform."""
     from refimpl.operating_system import cores, processor_name  # here and not above: --help is quick
 
     return {
@@ -76,7 +78,8 @@ def machine() -> dict[str, str | int | None]:
 
 
 def command() -> str:
-    """The command line as it could be typed again: `python -m MODULE`, or a program without its directory.
+    """Return the command line as it could be typed again: `python -m MODULE`, or a program without its
+    directory.
 
     Of absolute paths only the names are kept: they are this machine's.
     """
@@ -88,7 +91,7 @@ def command() -> str:
 
 
 def provenance() -> dict[str, object]:
-    """All of it, ready for JSON."""
+    """Return all of it, ready for JSON."""
     now = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
     return {
         "command": command(),
@@ -104,7 +107,8 @@ def _is_checkout() -> bool:
 
 
 def _git(root: Path, *arguments: str) -> str | None:
-    """Output of a git command, which leaves no lock behind; None when there is no git or no repository."""
+    """Return the output of a git command, which leaves no lock behind; None when there is no git or no
+    repository."""
     try:
         asked = ["git", "--no-optional-locks", "-C", str(root), *arguments]
         done = subprocess.run(asked, capture_output=True, encoding="utf-8", errors="replace", check=True)

@@ -10,7 +10,7 @@ WIDTH = 100
 
 
 def columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
-    """Rows of texts as aligned columns within `WIDTH`: the last one is wrapped where it must be.
+    """Return the rows of texts as aligned columns within `WIDTH`: the last one is wrapped where it must be.
 
     >>> print(columns([["mu", "0.1", "x"], ["approach", "12", "y"]]))
       mu        0.1  x
@@ -25,7 +25,7 @@ def columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
 
 
 def wrapped(text: str, first: str) -> str:
-    """The text after its first words, wrapped within `WIDTH`; what follows starts below it.
+    """Return the text after its first words, wrapped within `WIDTH`; what follows starts below it.
 
     >>> print(wrapped("word " * 20, "reason: "))
     reason: word word word word word word word word word word word word word word word word word word

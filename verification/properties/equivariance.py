@@ -19,7 +19,8 @@ FORCES = ("normal_force", "friction_force")
 
 
 def equal_states(moved: rf.Solution, pressure: Array, base: rf.Solution, sample: Sample, sign: float) -> None:
-    """Moved pressures equal ``pressure``, forces and approach those of ``base``; Q times ``sign``."""
+    """Require moved pressures equal to ``pressure``, forces and approach those of ``base``; Q times
+    ``sign``."""
     require(moved.status in ENDED_WELL)
     require(np.array_equal(moved.pressure > 0, pressure > 0))
     require(np.abs(moved.pressure - pressure).max() <= RESIDUAL * base.max_pressure)

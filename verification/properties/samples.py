@@ -84,19 +84,19 @@ class Sample:
 
 
 def heights(body: rf.Body, grid: Grid) -> Array:
-    """Heights of one body's surface (m)."""
+    """Return the heights of one body's surface (m)."""
     found: Array = body.surface.heights(grid)
     return found
 
 
 def array_body(material: rf.Material, z: Array, lengths: tuple[float, float]) -> rf.Body:
-    """A body of heights (m) that span a domain of those lengths (m), with pixels of any shape."""
+    """Return a body of heights (m) that span a domain of those lengths (m), with pixels of any shape."""
     (nx, ny), (Lx, Ly) = z.shape, lengths
     return rf.Body(material, rf.ArraySurface(z, pixel=(Lx / nx, Ly / ny)))
 
 
 def with_heights(scene: rf.Scene, grid: Grid, change: Callable[[Array], Array], **changes: Any) -> rf.Scene:
-    """The scene with ``change`` applied to both surfaces' heights, and with other fields changed."""
+    """Return the scene with ``change`` applied to both surfaces' heights, and with other fields changed."""
     lengths = changes.get("size", scene.lengths)
     upper, lower = (
         array_body(body.material, change(heights(body, grid)), lengths) for body in (scene.upper, scene.lower)
@@ -113,7 +113,7 @@ def samples(
     tau: bool = True,
     periodic: bool | None = None,
 ) -> Sample:
-    """Samples of 2 ... ``largest`` elements along x and along y; ``periodic=None`` draws either kind.
+    """Draw samples of 2 ... ``largest`` elements along x and along y; ``periodic=None`` draws either kind.
 
     Never two periodic flats: nothing deforms, and there is no length to measure a residual by.
     """

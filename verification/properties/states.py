@@ -19,24 +19,25 @@ ENDED_WELL = (rf.Status.CONVERGED, rf.Status.CYCLED)
 
 
 def solved(solver: Solver, sample: Sample, *, oblique: bool | None = None) -> rf.Solution:
-    """The sample's solution; fails when the solver does not claim to have solved it."""
+    """Return the sample's solution; fails when the solver does not claim to have solved it."""
     solution = solver(sample.scene, sample.shape, oblique=oblique)
     require(solution.status in ENDED_WELL, f"ended {solution.status.value}")
     return solution
 
 
 def from_first_contact(sample: Sample, solution: rf.Solution) -> float:
-    """Approach from first contact (m); a periodic one is reported from the mean planes."""
+    """Return the approach from first contact (m); a periodic one is reported from the mean planes."""
     return solution.approach + (float(sample.gap.mean()) if sample.periodic else 0.0)
 
 
 def displacement(sample: Sample, solution: rf.Solution) -> Array:
-    """Normal displacement of both bodies (m), from the returned surfaces."""
+    """Return the normal displacement of both bodies (m), from the returned surfaces."""
     return solution.details.separation - sample.gap + from_first_contact(sample, solution)
 
 
 def compliances(scene: rf.Scene) -> tuple[float, float]:
-    """Factors of ``I[1/rho]`` and ``I[s/rho^2]`` of the pair (1/Pa), anew; c is lower minus upper."""
+    """Return the factors of ``I[1/rho]`` and ``I[s/rho^2]`` of the pair (1/Pa), anew; c is lower minus
+    upper."""
     lower, upper = scene.lower.material, scene.upper.material
     a = (1 - lower.nu**2) / (math.pi * lower.E) + (1 - upper.nu**2) / (math.pi * upper.E)
     c_lower = (1 + lower.nu) * (1 - 2 * lower.nu) / (2 * math.pi * lower.E)
@@ -45,7 +46,8 @@ def compliances(scene: rf.Scene) -> tuple[float, float]:
 
 
 def slope_along_and_across(sample: Sample, solution: rf.Solution) -> tuple[Array, Array]:
-    """Tangents of theta_x and theta_y of the mean of the returned surfaces, by differences written out."""
+    """Return the tangents of theta_x and theta_y of the mean of the returned surfaces, by differences written
+    out."""
     z = np.add(*solution.surfaces) / 2
     (n, m), (dx, dy) = sample.shape, sample.grid.spacings
     d = np.zeros((2, n, m))
@@ -180,7 +182,8 @@ def agrees_with_the_dense_reference(solver: Solver, sample: Sample) -> None:
 
 
 def same_pressure(one: rf.Solution, other: rf.Solution, sample: Sample) -> None:
-    """Equal contact sets, pressures to `RESIDUAL` of the peak; approaches to it from first contact."""
+    """Require equal contact sets, pressures to `RESIDUAL` of the peak; approaches to it from first
+    contact."""
     require(np.array_equal(one.contact, other.contact))
     require(np.abs(one.pressure - other.pressure).max() <= RESIDUAL * other.max_pressure)
     require(abs(one.approach - other.approach) <= RESIDUAL * abs(from_first_contact(sample, other)))

@@ -13,7 +13,7 @@ from verification.reproduction.tangential import displacements, with_tangential
 
 
 def kinematic_margin(scene: rf.Scene, found: rf.Solution) -> float:
-    """Least of ``(approach - h) / approach`` on the contact; negative: no interference."""
+    """Return the least of ``(approach - h) / approach`` on the contact; negative: no interference."""
     lower, upper = scene.heights(found.grid)
     gap = upper - lower
     gap = gap - gap.min()
@@ -21,7 +21,7 @@ def kinematic_margin(scene: rf.Scene, found: rf.Solution) -> float:
 
 
 def sheared_scene(beta: float) -> rf.Scene:
-    """A steel ball on a polymer at 10 mN, with a shear of ``beta`` times the pressure."""
+    """Return a steel ball on a polymer at 10 mN, with a shear of ``beta`` times the pressure."""
     steel, polymer = rf.Material(E=200e9, nu=0.3), rf.Material(E=1e9, nu=0.2)
     bodies = rf.Body(steel, rf.Sphere(radius=0.14)), rf.Body(polymer, rf.Flat())
     return rf.Scene(*bodies, rf.Friction(beta=beta), load=0.01, side=4e-4)

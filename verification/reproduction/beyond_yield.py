@@ -1,4 +1,4 @@
-"""Section 8 with pressures that end at the hardness: friction and area over roughness, elastic and capped."""
+"""Section 8 with pressures capped at the hardness: friction and area over roughness, elastic and capped."""
 
 from __future__ import annotations
 
@@ -62,11 +62,11 @@ class Point:
         return float(plasticity(np.array([self.rms]))[0])
 
     def values(self, model: Model, name: str) -> Array:
-        """A number of `Found` by realisation."""
+        """Return a number of `Found` by realisation."""
         return np.array([getattr(one, name) for one in self.found[model]])
 
     def mean(self, model: Model, name: str) -> Estimate:
-        """Mean over realisations, with its interval."""
+        """Return the mean over realisations, with its interval."""
         return estimate(self.values(model, name).tolist())
 
     @property
@@ -80,12 +80,12 @@ class Point:
         return self.values("capped", "friction") / self.values("flat", "friction") - 1
 
     def elastic_error(self, name: str) -> Estimate:
-        """Elastic over capped number, less 1: mean over realisations, with its interval."""
+        """Return the elastic over capped number, less 1: mean over realisations, with its interval."""
         return estimate(list(self.values("elastic", name) / self.values("capped", name) - 1))
 
 
 def hard(scene: rf.Scene) -> rf.Scene:
-    """The scene with the hardness of section 8 on its lower body, the copper."""
+    """Return the scene with the hardness of section 8 on its lower body, the copper."""
     copper = replace(scene.lower.material, hardness=HARDNESS)
     return replace(scene, lower=rf.Body(copper, scene.lower.surface))
 
@@ -107,20 +107,20 @@ def point(load: float, flat_rms: float, mesh: int, realisations: int) -> Point:
 
 @cache
 def points(tier: str) -> tuple[Point, ...]:
-    """The scenes of Fig. 8: loads and roughnesses, roughness by roughness under each load."""
+    """Return the scenes of Fig. 8: loads and roughnesses, roughness by roughness under each load."""
     mesh, n = MESH[tier], REALISATIONS[tier]
     return tuple(point(load, flat, mesh, n) for load in LOADS for flat in FLATS[tier])
 
 
 @cache
 def cells(tier: str) -> tuple[Point, ...]:
-    """The rough columns of Table 3."""
+    """Return the rough columns of Table 3."""
     mesh, n = CELL_MESH[tier], CELL_REALISATIONS[tier]
     return tuple(point(SMOOTH.load, printed.flat_rms, mesh, n) for printed in TABLE3[1:])
 
 
 def crossing(found: Sequence[Point], values: Sequence[float], level: float) -> float:
-    """psi from which a quantity that falls is below the level, between neighbours; NaN if it never is.
+    """Return psi from which a quantity that falls is below the level, between neighbours; NaN if it never is.
 
     >>> p = [Point(1.0, s * 1e-6, {}) for s in (0.5, 1.0)]
     >>> bool(p[0].psi < crossing(p, [0.3, 0.1], 0.2) < p[1].psi)

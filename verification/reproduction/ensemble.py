@@ -34,7 +34,7 @@ class Estimate:
 
 
 def estimate(values: Sequence[float]) -> Estimate:
-    """Raises ValueError for fewer than two values or one that is not finite.
+    """Estimate a mean; raises ValueError for fewer than two values or one that is not finite.
 
     >>> e = estimate([1.0, 2.0, 3.0])
     >>> e.mean, round(e.half_width, 3), e.scatter
@@ -63,7 +63,8 @@ QUICK: Mapping[str, tuple[int, Mapping[str, Iterable[float]]]] = {
 
 @cache
 def rows_at(tier: str, name: str) -> tuple[Row, ...]:
-    """All rows of a shipped study, or in the quick tier those of its part on `QUICK_MESH` elements a side."""
+    """Return all rows of a shipped study, or in the quick tier those of its part on `QUICK_MESH` elements a
+    side."""
     if tier == "full":
         return rows_of(name)
     study, (realisations, vary) = read_study(name), QUICK[name]
@@ -73,7 +74,7 @@ def rows_at(tier: str, name: str) -> tuple[Row, ...]:
 
 @cache
 def rows_of(name: str) -> tuple[Row, ...]:
-    """All rows of a shipped study, kept in the folder that `FOLDER` names, if any; see `rows`."""
+    """Return all rows of a shipped study, kept in the folder that `FOLDER` names, if any; see `rows`."""
     folder = os.environ.get(FOLDER)
     if not folder:
         return rows(read_study(name))
@@ -82,7 +83,7 @@ def rows_of(name: str) -> tuple[Row, ...]:
 
 
 def rows(study: Study, store: Path | None = None) -> tuple[Row, ...]:
-    """All rows of a study, solved in this process, and kept in the store if one is given.
+    """Return all rows of a study, solved in this process, and kept in the store if one is given.
 
     Raises RuntimeError when a run failed or its certificate does not meet the tolerance: an ensemble with
     gaps is no ensemble.
@@ -97,7 +98,7 @@ def rows(study: Study, store: Path | None = None) -> tuple[Row, ...]:
 
 
 def column(found: Iterable[Row], quantity: str, **where: float) -> list[float]:
-    """Values of a quantity in the rows whose coordinates equal those given, in order.
+    """Return the values of a quantity in the rows whose coordinates equal those given, in order.
 
     Raises LookupError when there are none.
     """

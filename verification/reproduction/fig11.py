@@ -40,7 +40,8 @@ class Panel:
 
 
 def samples(realisation: int, grid: int) -> tuple[Array, Array, Array, Array]:
-    """The four samples of one realisation at P = 70 N: heights in um, slopes (along sliding) in degrees.
+    """Return the four samples of one realisation at P = 70 N: heights in um, slopes (along sliding) in
+    degrees.
 
     Undeformed: the flat within the nominal contact, the Hertz circle. In contact: the deformed flat's heights
     and the slopes of the common surface on the true contact.
@@ -60,7 +61,7 @@ def samples(realisation: int, grid: int) -> tuple[Array, Array, Array, Array]:
 
 
 def panels(realisations: int, grid: int) -> list[Panel]:
-    """The four distributions over realisations."""
+    """Return the four distributions over realisations."""
     found, result = [samples(k, grid) for k in range(realisations)], []
     for name, parts in zip(PANELS, zip(*found, strict=True), strict=True):
         pooled = np.concatenate([part - part.mean() for part in parts])

@@ -31,14 +31,14 @@ class Statistics:
 
 
 def surface(realisation: int, grid: int, *, ball: bool = False) -> Array:
-    """Normalised heights (unit rms) of the flat's roughness, or the ball's."""
+    """Return the normalised heights (unit rms) of the flat's roughness, or the ball's."""
     seed = FIRST_SEED + 2 * realisation + (not ball)
     roughness = rf.GaussianRoughness(1.0e-6, CORRELATION_LENGTH, seed, normalise=True)
     return roughness.heights(rf.Grid.square(SIDE, grid)) * 1e6
 
 
 def measured(realisations: int, grid: int) -> Statistics:
-    """Statistics of the flats' roughness."""
+    """Return the statistics of the flats' roughness."""
     h = SIDE / grid
     found = []
     for k in range(realisations):
@@ -54,5 +54,5 @@ def measured(realisations: int, grid: int) -> Statistics:
 
 
 def degrees(slope_per_rms: float, rms: float) -> float:
-    """Slope angle (degrees) of a surface of the given rms (m)."""
+    """Return the slope angle (degrees) of a surface of the given rms (m)."""
     return math.degrees(math.atan(slope_per_rms * rms))

@@ -28,7 +28,7 @@ class Profiles:
 
 @cache
 def profiles(grid: int) -> Profiles:
-    """Table 1, smooth, P = 70 N; the upper ball slides along +x."""
+    """Return Table 1, smooth, P = 70 N; the upper ball slides along +x."""
     found = rf.solve(SMOOTH, grid)
     x = found.grid.x - SMOOTH.lengths[0] / 2
     middle = grid // 2  # upper one of the two middle lines

@@ -42,7 +42,7 @@ class Profile:
         return np.asarray(self.surfaces.mean(axis=0))
 
     def misfit(self, theory: Array) -> float:
-        """Rms difference from a theory by area, over Hertz' peak."""
+        """Return the rms difference from a theory by area, over Hertz' peak."""
         return _rms(self.pressure - theory)
 
     @property
@@ -66,7 +66,7 @@ class Profile:
         return float(np.mean(self.surfaces[:, 0] == 0))
 
     def farthest(self, theory: Array) -> float:
-        """Largest difference of a ring's mean from a theory, over Hertz' peak."""
+        """Return the largest difference of a ring's mean from a theory, over Hertz' peak."""
         return float(np.abs(self.pressure - theory).max()) / hertz().peak_pressure
 
     def load_share(self, curve: Array) -> float:
@@ -75,12 +75,12 @@ class Profile:
 
 
 def _rms(pressure: Array) -> float:
-    """Root mean square over rings of equal area, over Hertz' peak."""
+    """Return the root mean square over rings of equal area, over Hertz' peak."""
     return float(np.sqrt(np.mean(pressure**2))) / hertz().peak_pressure
 
 
 def interval(samples: Array) -> tuple[Array, Array]:
-    """The 95 % interval of the mean over the first axis by the percentile bootstrap (Efron 1979).
+    """Return the 95 % interval of the mean over the first axis by the percentile bootstrap (Efron 1979).
 
     Where contact is rare a ring's pressure is mostly zero and far from normal; this interval ends at zero.
     """
@@ -91,7 +91,7 @@ def interval(samples: Array) -> tuple[Array, Array]:
 
 
 def summits(rms: float) -> gt.RoughSphere:
-    """Greenwood and Tripp's rough sphere with the summit statistics of Eq. (9)."""
+    """Return Greenwood and Tripp's rough sphere with the summit statistics of Eq. (9)."""
     height, density, radius = gt.gaussian_summits(rms, CORRELATION_LENGTH)
     return gt.RoughSphere(
         load=SMOOTH.load,
@@ -104,20 +104,22 @@ def summits(rms: float) -> gt.RoughSphere:
 
 
 def textbook(rms: float, mu: float = 4.0) -> gt.RoughSphere:
-    """The curve in Johnson 1985, Fig. 13.12: alpha from all heights, as in the caption, and mu."""
+    """Return the curve in Johnson 1985, Fig. 13.12: alpha from all heights, as in the caption, and mu."""
     _, _, radius = gt.gaussian_summits(rms, CORRELATION_LENGTH)
     density = mu * 3 / 8 / (rms * np.sqrt(2 * RADIUS * radius))
     return replace(summits(rms), summit_rms=rms, summit_density=float(density))
 
 
 def contact(rms: float, realisation: int, grid: int) -> rf.Solution:
-    """Frictionless contact with all the roughness on the flat, slopes neglected ("tips of asperities")."""
+    """Return the frictionless contact with all the roughness on the flat, slopes neglected ("tips of
+    asperities")."""
     scene = rough(rms, realisation=realisation, friction=NO_FRICTION)
     return rf.solve(scene, grid, oblique=False)
 
 
 def effective_pressure(rms: float, first: int, realisations: int, grid: int) -> Profile:
-    """Pressures of realisations from ``first`` on by ring, and both theories' on the same rings."""
+    """Return the pressures of realisations from ``first`` on by ring, and both theories' on the same
+    rings."""
     centres = SMOOTH.grid(grid).x - SMOOTH.lengths[0] / 2
     distance = np.hypot(centres[:, None], centres[None, :])
     ring = (RINGS * (2 * distance / SMOOTH.lengths[0]) ** 2).astype(int)

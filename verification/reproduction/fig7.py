@@ -36,7 +36,7 @@ class Section:
 
 @cache
 def section(grid: int) -> Section:
-    """One realisation at P = 70 N."""
+    """Solve one realisation at P = 70 N."""
     scene = rough(FLAT_RMS, BALL_RMS)
     with_friction = rf.solve(scene, grid)
     without = rf.solve(rough(FLAT_RMS, BALL_RMS, friction=NO_FRICTION), grid)

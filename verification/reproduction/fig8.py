@@ -39,20 +39,20 @@ class Curve:
         return (self.rms[1:] + self.rms[:-1]) / 2
 
     def rate(self, values: Array) -> Array:
-        """Slope of a curve over sigma_e between neighbours, over its first one."""
+        """Return the slope of a curve over sigma_e between neighbours, over its first one."""
         slope = np.diff(values) / np.diff(self.rms)
         return np.asarray(slope / slope[0])
 
 
 def plasticity(rms: Array, length: float = CORRELATION_LENGTH) -> Array:
-    """Eq. (12) with the given length (m) for its epsilon."""
+    """Return Eq. (12) with the given length (m) for its epsilon."""
     modulus = SMOOTH.materials.reduced_modulus
     return np.array([plasticity_index(modulus, HARDNESS, s, length) for s in rms])
 
 
 @cache
 def curves(tier: str) -> tuple[Curve, ...]:
-    """One curve per load, of the shipped study or its quick part."""
+    """Return one curve per load, of the shipped study or its quick part."""
     mesh = 256 if tier == "full" else QUICK_MESH
     return tuple(_curve(rows_at(tier, "fig8"), load, mesh) for load in LOADS)
 
@@ -86,7 +86,7 @@ class Decay:
 
 
 def decay(curve: Curve) -> Decay:
-    """Least-squares fits of three parameters each to mu over sigma_e."""
+    """Return the least-squares fits of three parameters each to mu over sigma_e."""
     x, fall = curve.rms * 1e6, float(np.ptp(curve.friction))
 
     def exponential(s: Array, limit: float, height: float, scale: float) -> Array:

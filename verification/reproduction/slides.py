@@ -24,7 +24,7 @@ class Turning:
 
 
 def turning(found: Sequence[Row]) -> list[Turning]:
-    """One entry per roughness."""
+    """Return one entry per roughness."""
     directions = sorted({row["sliding_direction"] for row in found})
     result = []
     for flat in sorted({row["lower_rms"] for row in found}):
@@ -39,7 +39,8 @@ def turning(found: Sequence[Row]) -> list[Turning]:
 
 
 def beyond_mean_slope(direction: Array, values: Array) -> float:
-    """Share of the variance over directions (rad) that first harmonics leave; shape as in `Turning`.
+    """Return the share of the variance over directions (rad) that first harmonics leave; shape as in
+    `Turning`.
 
     >>> angle = np.radians([0, 60, 120, 180, 240, 300])
     >>> round(beyond_mean_slope(angle, np.array([3 * np.cos(angle) + np.sin(angle)])), 12)
@@ -66,7 +67,8 @@ class Trace:
 
 
 def trace(found: Sequence[Row], quantity: str) -> Trace:
-    """Statistics of a trace; ``correlated`` is the integral of its autocorrelation up to the first zero."""
+    """Return the statistics of a trace; ``correlated`` is the integral of its autocorrelation up to the first
+    zero."""
     offset = np.array([row["sliding_offset"] for row in found])
     values = np.array([row[quantity] for row in found])
     deviation = values - values.mean()

@@ -25,7 +25,7 @@ def rough(
     sliding_direction: float = 0.0,
     radius: float = RADIUS,
 ) -> rf.Scene:
-    """Table 1 with roughness (m) on the flat and on the sphere; each realisation scaled to its rms."""
+    """Return Table 1 with roughness (m) on the flat and on the sphere; each realisation scaled to its rms."""
     ball = rf.Body(SMOOTH.upper.material, rf.Sphere(radius))
 
     def body(name: str, rms: float, seed: int) -> rf.Body:
@@ -46,7 +46,7 @@ def rough(
 
 
 def coupling() -> float:
-    """``c0`` of `verification.exact.coupled_indentation` (1/Pa), from the moduli as printed."""
+    """Return ``c0`` of `verification.exact.coupled_indentation` (1/Pa), from the moduli as printed."""
 
     def factor(m: rf.Material) -> float:
         return (1 + m.nu) * (1 - 2 * m.nu) / (2 * math.pi * m.E)
@@ -55,5 +55,5 @@ def coupling() -> float:
 
 
 def hertz(load: float = SMOOTH.load, radius: float = RADIUS) -> Sphere:
-    """The smooth, frictionless contact with Table 1's moduli."""
+    """Return the smooth, frictionless contact with Table 1's moduli."""
     return Sphere(load, radius, SMOOTH.materials.reduced_modulus)

@@ -43,8 +43,8 @@ class Cell:
 
 
 def half_digit(printed: float) -> float:
-    """Half a unit of the last printed digit: mu and A (0.1 mm^2) have two decimals of 0.1, pressures three
-    digits.
+    """Return half a unit of the last printed digit: mu and A (0.1 mm^2) have two decimals of 0.1, pressures
+    three digits.
 
     >>> half_digit(0.218), half_digit(4.4e-8), half_digit(1.64e8), half_digit(1.91e9)
     (0.0005, 5e-10, 500000.0, 5000000.0)
@@ -56,12 +56,12 @@ def half_digit(printed: float) -> float:
 
 @cache
 def smooth(mesh: int) -> rf.Solution:
-    """The smooth column's contact."""
+    """Return the smooth column's contact."""
     return rf.solve(SMOOTH, mesh)
 
 
 def cells(found: Sequence[Row], quantity: str, meshes: Sequence[int] = MESHES) -> list[Cell]:
-    """The table's row of one quantity: all columns, mesh after mesh."""
+    """Return the table's row of one quantity: all columns, mesh after mesh."""
     table = []
     for row, mesh in product(TABLE3, meshes):
         if row.flat_rms == 0:
@@ -73,7 +73,7 @@ def cells(found: Sequence[Row], quantity: str, meshes: Sequence[int] = MESHES) -
 
 
 def series(table: Sequence[Cell]) -> dict[str, list[float]]:
-    """The cells as flat series for the report."""
+    """Return the cells as flat series for the report."""
     return {
         "sigma_e (um)": [cell.column.equivalent_rms * 1e6 for cell in table],
         "mesh": [cell.mesh for cell in table],

@@ -27,7 +27,7 @@ from refimpl.grid import Array
 
 
 def element_integrals(M: int, spacing: float) -> dict[str, Array]:
-    """The integrals at all offsets -(M-1) ... M-1 of an M x M grid, shapes ``(2M - 1, 2M - 1)``."""
+    """Return the integrals at all offsets -(M-1) ... M-1 of an M x M grid, shapes ``(2M - 1, 2M - 1)``."""
     corner = np.asarray((np.arange(2 * M) - M + 0.5) * spacing, dtype=np.float64)
     x: Array = corner[:, None]
     y: Array = corner[None, :]
@@ -44,7 +44,7 @@ def element_integrals(M: int, spacing: float) -> dict[str, Array]:
 
 
 def _log_sum(a: Array, b: Array, rho: Array) -> Array:
-    """``log(a + rho)``, free of cancellation for a < 0: ``a + rho = b^2 / (rho - a)``."""
+    """Return ``log(a + rho)``, free of cancellation for a < 0: ``a + rho = b^2 / (rho - a)``."""
     reach = np.abs(a) + rho
     return np.log(np.where(a < 0, b * b / reach, reach))
 
@@ -61,7 +61,8 @@ class Tangential:
 
 
 def displacements(scene: rf.Scene, found: rf.Solution) -> Tangential:
-    """Tangential displacements by the solution's own tractions; sliding along x. Raises ValueError otherwise.
+    """Return the tangential displacements by the solution's own tractions; sliding along x. Raises ValueError
+    otherwise.
 
     At a fixed place the deformed surface shows the height that was a displacement away, so the gap changes by
     ``-u_upper . grad z_upper + u_lower . grad z_lower``.
@@ -98,7 +99,7 @@ def _relative(u: Array, found: rf.Solution) -> Array:
 
 
 def with_tangential(scene: rf.Scene, found: rf.Solution) -> rf.Scene:
-    """The scene with the solution's tangential displacements worked into both undeformed surfaces."""
+    """Return the scene with the solution's tangential displacements worked into both undeformed surfaces."""
     moved = displacements(scene, found)
     h = found.grid.spacings[0]
     bodies = []

@@ -59,7 +59,7 @@ def pressed(
     offset: float = 0.0,
     periodic: bool = False,
 ) -> rf.Scene:
-    """Table 1's sphere on a rough flat with changes; no ``radius`` or ``rms`` means flat or smooth."""
+    """Return Table 1's sphere on a rough flat with changes; no ``radius`` or ``rms`` means flat or smooth."""
     return rf.Scene(
         upper=rf.Body(upper, rf.Flat() if radius is None else rf.Sphere(radius)),
         lower=rf.Body(
@@ -76,7 +76,7 @@ def pressed(
 
 
 def cross_checks() -> tuple[Trial, ...]:
-    """The scenes, unsolved; a `Trial` solves itself on first use."""
+    """Return the scenes, unsolved; a `Trial` solves itself on first use."""
     incompressible = pressed(upper=rf.Material(70e9, 0.5), lower=rf.Material(3e9, 0.1), load=8.0)
     soft_ball = pressed(upper=POLYMER, lower=STEEL, radius=0.05, rms=0.8e-6, seed=3, load=5.0, side=2e-3)
     rough_planes = rf.read_scene("rough-planes")

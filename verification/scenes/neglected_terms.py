@@ -54,7 +54,7 @@ class Trial:
 
 
 def random_scene(rng: np.random.Generator) -> rf.Scene:
-    """One scene of the four kinds."""
+    """Return one scene of the four kinds."""
     lower, upper = _materials(rng)
     modulus = 1 / (1 / lower.plane_strain_modulus + 1 / upper.plane_strain_modulus)
     kind = rng.choice(["smooth", "rough", "planes", "both rough"])
@@ -104,7 +104,7 @@ def _materials(rng: np.random.Generator) -> tuple[rf.Material, rf.Material]:
 
 
 def trials(seed: int, scenes: int, M: int, accuracy: float) -> list[Trial]:
-    """Every term that is not exactly zero, in each scene, with the plan's word at the accuracy."""
+    """Return every term that is not exactly zero, in each scene, with the plan's word at the accuracy."""
     rng = np.random.default_rng(seed)
     found: list[Trial] = []
     for number in range(scenes):
@@ -131,7 +131,7 @@ def _trials_of(number: int, problem: Problem, plan: Plan) -> list[Trial]:
 
 
 def _mu_and_area(problem: Problem) -> tuple[float, float]:
-    """Friction coefficient and contact area (m^2); raises `RuntimeError` without convergence."""
+    """Return the friction coefficient and contact area (m^2); raises `RuntimeError` without convergence."""
     state = solve_fft(problem, TOLERANCE, Counter())
     if not state.certificate.satisfies(10 * TOLERANCE):
         raise RuntimeError(f"{state.status.value}: {state.certificate.largest:.1e}")

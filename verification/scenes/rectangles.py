@@ -11,7 +11,7 @@ SIDE = 1.61e-3
 
 
 def rectangles() -> tuple[Trial, ...]:
-    """The scenes, unsolved; a `Trial` solves itself on first use."""
+    """Return the scenes, unsolved; a `Trial` solves itself on first use."""
     double, half = (2 * SIDE, SIDE), (SIDE, 0.5 * SIDE)
     soft = pressed(lower=POLYMER, rms=0.4e-6, load=2.0, size=(1.2 * SIDE, 0.8 * SIDE), direction=0.7)
     plane = pressed(

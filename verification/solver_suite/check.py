@@ -151,7 +151,7 @@ class Entrant:
         return Pressed(problem, np.asarray(answer.pressure))
 
     def misfit(self, pressed: Pressed, exact: Array) -> float:
-        """Squared energy-norm error against exact pressures, in units of the claim.
+        """Return the squared energy-norm error against exact pressures, in units of the claim.
 
         The mean of a periodic pressure stores no energy: its relative error counts as squared as well. Raises
         ValueError for pressures to compare with that hold no energy, or carry no load.
@@ -164,7 +164,8 @@ class Entrant:
         return error / self.claim
 
     def against(self, *answers: tuple[Pressed, Array]) -> Measured:
-        """The worst misfit of answers against exact pressures; the note tells where that answer is off."""
+        """Return the worst misfit of answers against exact pressures; the note tells where that answer is
+        off."""
         misfits = [self.misfit(pressed, exact) for pressed, exact in answers]
         worst = int(np.argmax(misfits))
         which = f"problem {worst + 1} of {len(answers)}: " if len(answers) > 1 else ""
@@ -173,7 +174,7 @@ class Entrant:
 
 
 def difference(found: Array, exact: Array) -> str:
-    """In words: the load that is carried, if another one, and the element that is farthest off.
+    """State in words the load that is carried, if another one, and the element that is farthest off.
 
     >>> difference(np.array([[1.0, 2.0]]), np.array([[1.0, 4.0]]))
     'carries 0.6 of the right load; farthest off is element [0, 1] with 2 Pa for 4 Pa'
@@ -245,7 +246,7 @@ class Check:
 
 
 def in_words(found: Measured) -> str:
-    """Value, reference and data of a measurement.
+    """Return the value, reference and data of a measurement.
 
     >>> in_words(Measured(2.0, 3.0, unit="N", data={"M": [12, 24]}))
     '2 for 3 N; M [12, 24]'

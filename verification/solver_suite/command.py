@@ -72,7 +72,7 @@ class Command:
 
     @classmethod
     def of(cls, line: str, abilities: Abilities, timeout: float) -> Command:
-        """From a command line, split like a shell does; no shell runs it.
+        """Parse a command line, split like a shell does; no shell runs it.
 
         Raises `InputError` also where its first word is no program.
         """
@@ -85,7 +85,7 @@ class Command:
         return cls(words, abilities, timeout)
 
     def solver(self) -> Command:
-        """Itself: a source for `verification.solver_suite.isolated`."""
+        """Return itself: a source for `verification.solver_suite.isolated`."""
         return self
 
     @property
@@ -110,7 +110,7 @@ class Command:
                     stdin=subprocess.DEVNULL,
                     stdout=output,
                     stderr=subprocess.STDOUT,
-                    start_new_session=True,
+                    process_group=0 if os.name == "posix" else None,
                 )
             except OSError as missing:
                 raise BadAnswer(f"cannot run {self.words[0]}: {missing.strerror}") from missing
@@ -126,7 +126,7 @@ class Command:
 
 
 def _last_line(output: BinaryIO) -> str:
-    """The end of what a program said; it may have said gigabytes, or removed the file."""
+    """Return the end of what a program said; it may have said gigabytes, or removed the file."""
     output.seek(max(0, output.seek(0, os.SEEK_END) - MOST_READ))
     said = output.read(MOST_READ).decode(errors="replace").split("\n")
     return next((line.strip() for line in reversed(said) if line.strip()), "nothing said")[:200]
@@ -161,7 +161,7 @@ def write_problem(problem: ContactProblem, directory: Path) -> None:
 
 
 def read_answer(directory: Path) -> Answer:
-    """The answer in a directory, for `ask` to judge. Raises `BadAnswer` where there is none."""
+    """Return the answer in a directory, for `ask` to judge. Raises `BadAnswer` where there is none."""
     table, archive, header = (directory / name for name in ("pressure.csv", "answer.npz", "answer.json"))
     for path in (table, archive, header):
         if path.exists() and not path.is_file():  # a pipe would be read for ever
@@ -179,7 +179,8 @@ def read_answer(directory: Path) -> Answer:
 
 
 def _read_table(path: Path) -> Array:
-    """Numbers between commas; ValueError says which line has something else, or another number of them."""
+    """Return the numbers between commas; ValueError says which line has something else, or another number of
+    them."""
     rows: list[list[float]] = []
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
         if not line:

@@ -114,7 +114,8 @@ CASES = (
 
 
 def exit_status(results: Sequence[Result]) -> int:
-    """0: some limit was judged, all that were are right, and all orders hold; else `WRONG` or `SLOW`."""
+    """Return 0 if some limit was judged, all that were are right, and all orders hold; else `WRONG` or
+    `SLOW`."""
     statuses = [result.status for result in results]
     if "pass" not in statuses or "fail" in statuses or "error" in statuses:
         return WRONG
@@ -122,7 +123,7 @@ def exit_status(results: Sequence[Result]) -> int:
 
 
 def slow(results: Sequence[Result]) -> list[str]:
-    """Ids of the cases with a right limit whose order is below its least."""
+    """Return the ids of the cases with a right limit whose order is below its least."""
     passed = [r for r in results if r.status == "pass" and "order" in r.data]
     return [r.id for r in passed if not _number(r, "order") >= SHARE * _number(r, "expected")]
 

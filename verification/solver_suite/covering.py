@@ -1,44 +1,59 @@
-"""Covering arrays: every combination of levels of any few dimensions occurs in some row."""
+"""Covering arrays: every combination of levels of any few dimensions occurs in some row.
+
+Found once: ``python -m verification.solver_suite.covering`` writes `FILE` anew.
+"""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 import numpy as np
 
-TRIES = 30
-"""Completions of a row among which the best is taken."""
+from verification.solver_suite.dimensions import DESIGNS, FURTHER, Design
+
+FILE = Path(__file__).with_name("covering.json")
+"""By design its rows, each a text of the numbers of its levels, to the base 36."""
 Combination = tuple[int, ...]
 """Dimension, level, dimension, level, ..."""
 
 
-def covering(
-    dimensions: Mapping[str, Sequence[Any]], seed: int, *, strength: int = 2, tries: int = TRIES
-) -> list[dict[str, Any]]:
-    """Rows of a covering array, by a greedy search among random completions.
+def stored(name: str, design: Design) -> list[dict[str, object]]:
+    """Return the rows of the covering array of a design, from `FILE`."""
+    levels = design.dimensions.values()
+    return [
+        dict(zip(design.dimensions, (of[int(k, 36)] for k, of in zip(row, levels, strict=True)), strict=True))
+        for row in json.loads(FILE.read_text(encoding="utf-8"))[name]
+    ]
 
-    >>> rows = covering({"a": (1, 2), "b": (3, 4), "c": (5, 6)}, seed=0)
-    >>> len({(row["a"], row["c"]) for row in rows})
+
+def covering(sizes: Sequence[int], seed: int, *, strength: int = 2, tries: int = 30) -> list[list[int]]:
+    """Return the rows of a covering array of dimensions with so many levels, by a greedy search among
+    completions.
+
+    Of ``tries`` random completions of a row the best is taken.
+
+    >>> rows = covering((2, 2, 2), seed=0)
+    >>> len({(row[0], row[2]) for row in rows})
     4
     """
-    names, random = list(dimensions), np.random.default_rng(seed)
-    sizes = [len(dimensions[name]) for name in names]
+    random = np.random.default_rng(seed)
     wanted = {
         tuple(itertools.chain(*zip(chosen, levels, strict=True)))
-        for chosen in itertools.combinations(range(len(names)), strength)
+        for chosen in itertools.combinations(range(len(sizes)), strength)
         for levels in itertools.product(*(range(sizes[k]) for k in chosen))
     }
     rows = []
     while wanted:
-        left, best, most = sorted(wanted), [0] * len(names), -1
+        left, best, most = sorted(wanted), [0] * len(sizes), -1
         for _ in range(tries):
             fixed = left[random.integers(len(left))]
             row = [int(random.integers(size)) for size in sizes]
             for k, level in zip(fixed[::2], fixed[1::2], strict=True):
                 row[k] = level
-            for k in random.permutation([k for k in range(len(names)) if k not in fixed[::2]]):
+            for k in random.permutation([k for k in range(len(sizes)) if k not in fixed[::2]]):
                 gains = []
                 for level in range(sizes[k]):
                     row[k] = level
@@ -49,7 +64,7 @@ def covering(
             if gain > most:
                 best, most = row, gain
         wanted -= {*_combinations(best, strength)}
-        rows.append({name: dimensions[name][level] for name, level in zip(names, best, strict=True)})
+        rows.append(best)
     return rows
 
 
@@ -59,7 +74,19 @@ def _combinations(row: Sequence[int], strength: int) -> Iterator[Combination]:
 
 
 def _with(row: Sequence[int], k: int, strength: int) -> Iterator[Combination]:
-    """Those of a row's combinations that hold dimension ``k``."""
+    """Yield those of a row's combinations that hold dimension ``k``."""
     others = [other for other in range(len(row)) if other != k]
     for chosen in itertools.combinations(others, strength - 1):
         yield tuple(itertools.chain(*((each, row[each]) for each in sorted((k, *chosen)))))
+
+
+def text(name: str) -> list[str]:
+    """Return the rows of a design as `FILE` has them, from a search."""
+    dimensions, seed, strength, tries, _ = (DESIGNS | FURTHER)[name]
+    found = covering([len(levels) for levels in dimensions.values()], seed, strength=strength, tries=tries)
+    return ["".join(np.base_repr(level, 36) for level in row) for row in found]
+
+
+if __name__ == "__main__":
+    rows = {name: text(name) for name in DESIGNS | FURTHER}
+    FILE.write_text(json.dumps(rows, indent=0) + "\n", encoding="utf-8")

@@ -14,7 +14,7 @@ import numpy as np
 
 from refimpl.grid import Array
 from verification.solver_suite import reference_solution
-from verification.solver_suite.covering import covering
+from verification.solver_suite.covering import stored
 from verification.solver_suite.dimensions import (
     BEYOND,
     CHANGED,
@@ -39,13 +39,13 @@ FARTHER = 40
 
 @cache
 def rows() -> dict[str, tuple[dict[str, Any], ...]]:
-    """Rows of the designs, by name; small grids first within each."""
+    """Return the rows of the designs, by name; small grids first within each."""
     return _rows_of(DESIGNS, _own_sizes())
 
 
 @cache
 def further_rows() -> dict[str, tuple[dict[str, Any], ...]]:
-    """Rows of the further designs that ``--thorough`` poses."""
+    """Return the rows of the further designs that ``--thorough`` poses."""
     return _rows_of(FURTHER, _own_sizes()[len(rows()["memory"]) :])
 
 
@@ -60,20 +60,20 @@ def seed_of(design: str, number: int) -> int:
 
 
 def _rows_of(designs: Mapping[str, Design], sizes: Sequence[int]) -> dict[str, tuple[dict[str, Any], ...]]:
-    """Rows by name; each problem of a memory has the next one of the sizes."""
+    """Return the rows by name; each problem of a memory has the next one of the sizes."""
     made, next_size = {}, iter(sizes)
-    for name, (dimensions, seed, strength, tries, fixed) in designs.items():
-        found = [{**fixed, **row} for row in covering(dimensions, seed, strength=strength, tries=tries)]
+    for name, design in designs.items():
+        found = [{**design.fixed, **row} for row in stored(name, design)]
         if name == "tiny":
             found = [_bounded(row) for row in found]
-        if "changed" in dimensions:
+        if "changed" in design.dimensions:
             found = [row | {"elements": next(next_size)} for row in found]
         made[name] = tuple(sorted(found, key=lambda row: int(row["elements"])))
     return made
 
 
 def _bounded(row: dict[str, Any]) -> dict[str, Any]:
-    """A flat periodic gap has no approach: its pressures are given by the load alone."""
+    """Return no approach: a flat periodic gap has none, its pressures are given by the load alone."""
     flat = row["surface"] == "flat" or row["elements"] == 1
     return row | {"control": "load"} if flat and row["borders"] == "periodic" else row
 
@@ -84,7 +84,7 @@ def _own_sizes() -> list[int]:
 
 
 def shape_of(row: Row) -> tuple[int, int]:
-    """Elements along x and y of the problem of a row."""
+    """Return the elements along x and y of the problem of a row."""
     n = int(row["elements"])
     across = {"wide": (n, max(3, n // 2)), "deep": (max(3, n // 2), n), "both": (n, max(3, 2 * n // 3))}
     return (across | {"row": (n, 1)}).get(row.get("shape", ""), (n, n))

@@ -11,8 +11,6 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from verification.solver_suite.covering import TRIES
-
 PLAIN: dict[str, tuple[Any, ...]] = {
     "elements": (9, 16, 31, 32, 45, 64, 125, 176),
     "edge": (1e-9, 1e-7, 1e-5, 1e-3, 1.0, 1e3),
@@ -133,7 +131,7 @@ class Design(NamedTuple):
     dimensions: dict[str, tuple[Any, ...]]
     seed: int
     strength: int = 2
-    tries: int = TRIES
+    tries: int = 30
     fixed: Mapping[str, Any] = MappingProxyType({})
 
 

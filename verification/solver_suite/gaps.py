@@ -8,13 +8,13 @@ from refimpl.grid import Array
 
 
 def centres(side: float, M: int) -> tuple[Array, Array]:
-    """Element centres from the middle of the square: x ``(M, 1)`` and y ``(1, M)`` (m)."""
+    """Return the element centres from the middle of the square: x ``(M, 1)`` and y ``(1, M)`` (m)."""
     x = ((np.arange(M) + 0.5) / M - 0.5) * side
     return x[:, None], x[None, :]
 
 
 def waves(M: int, seed: int, *, longest: int = 1, shortest: int, hurst: float = 0.8) -> Array:
-    """Random periodic heights ``(M, M)`` of unit rms: waves 1 ... ``shortest``, flat spectrum up to
+    """Return random periodic heights ``(M, M)`` of unit rms: waves 1 ... ``shortest``, flat spectrum up to
     ``longest``, self-affine beyond; the same surface on every grid, ``M > 2 shortest``.
 
     >>> coarse, fine = waves(8, 0, shortest=3), waves(24, 0, shortest=3)
@@ -33,7 +33,7 @@ def waves(M: int, seed: int, *, longest: int = 1, shortest: int, hurst: float = 
 
 
 def rough_bump(M: int, seed: int) -> Array:
-    """A lopsided paraboloid with random waves on it, ``(M, M)``, on a square of side 1.
+    """Return a lopsided paraboloid with random waves on it, ``(M, M)``, on a square of side 1.
 
     Curvatures 1 and 2 with a twist between them, centred off the middle: no symmetry that could hide a fault.
     """

@@ -7,23 +7,21 @@ new process starts. What it started is ended with it, whatever session that is i
 from __future__ import annotations
 
 import importlib
-import multiprocessing
 import os
-import pickle
 import secrets
-import socket
+import shutil
 import sys
-import time
+import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from refimpl.errors import InputError
 from refimpl.grid import Array
-from refimpl.operating_system import interrupts_blocked, start_tracker
 from verification.framework.case import Reported, Result, Unavailable, readable
 from verification.solver_suite import process
 from verification.solver_suite.check import Check
@@ -98,71 +96,37 @@ class Remote:
     def __init__(self, source: Source, timeout: float, name: str) -> None:
         require_timeout(timeout)
         self._source, self._limit, self._name = source, timeout + GRACE, name
-        self._mark, self._number, self._lost = secrets.token_hex(8), 0, False
+        self._mark, self._lost = secrets.token_hex(8), False
         self.left: list[str] = []
         self.identity: Identity = {}
-        start_tracker()
         self.abilities = self._open()
 
     def __call__(self, problem: ContactProblem) -> Answer:
-        """The solver's answer. Raises `Reported` for what became of it instead, and `Unavailable`."""
+        """Return the solver's answer. Raises `Reported` for what became of it instead, and `Unavailable`."""
         if self._lost:
             self.close()
             self._open()
-        self._number, deadline = self._number + 1, time.monotonic() + self._limit
-        try:
-            reply, body = self._exchange(problem, deadline)
-        except BaseException:
-            self._lost = True
-            raise
-        if reply["kind"] == "unavailable":
+        self._number += 1
+        self._lost = True  # until there is a reply
+        process.pose(self._process, self._folder, self._number, problem)
+        place = self._folder / str(self._number)
+        reply, body = process.reply(self._process, place, self._limit, problem.gap.nbytes)
+        self._lost = False
+        if reply.get("kind") == "unavailable":
             raise Unavailable(str(reply.get("note", "")))
-        if reply["kind"] != "answer":
+        if reply.get("kind") != "answer":
             raise Reported(str(reply.get("note", "")))
         beside = {name: reply.get(name) for name in NUMBERS}
         return Answer(np.frombuffer(body, "<f8").reshape(problem.shape), True, **beside)
 
-    def _exchange(self, problem: ContactProblem, deadline: float) -> tuple[dict[str, Any], bytes]:
-        try:
-            question = {"number": self._number}
-            process.send(self._socket, question, pickle.dumps(problem), seconds=self._limit)
-            reply: dict[str, Any] = {}
-            while reply.get("number") != self._number:  # an earlier answer's double is skipped
-                left = max(0.0, deadline - time.monotonic())
-                reply, body = process.receive(self._socket, seconds=left)
-                if not (isinstance(reply.get("number"), int) and reply["number"] <= self._number):
-                    raise process.Garbled("an answer to no problem")
-            if reply.get("kind") not in ("answer", "failed", "unavailable"):
-                raise process.Garbled("an answer of no kind")
-            if reply["kind"] == "answer" and len(body) != problem.gap.nbytes:
-                raise process.Garbled("pressures of another size")
-        except process.Late:
-            raise Reported(f"no answer within {self._limit:g} s") from None
-        except process.Garbled:
-            raise Reported("the solver's process sent something else than an answer") from None
-        except (EOFError, OSError):
-            raise Reported(f"the solver's process died ({process.exit_text(self._exit_status())})") from None
-        return reply, body
-
     def close(self) -> None:
         """End the process and what it started."""
         self.left += process.end_all(self._process, self._mark)
-        self._socket.close()
+        shutil.rmtree(self._folder, ignore_errors=True)
 
     def _open(self) -> Abilities:
-        context, before = multiprocessing.get_context("spawn"), os.environ.get(process.SOLVER_OF)
-        self._socket, theirs = socket.socketpair()
-        self._lost = False
-        os.environ[process.SOLVER_OF] = self._mark
-        try:
-            with interrupts_blocked():
-                self._process = context.Process(target=process.serve, args=(theirs, self._source))
-                self._process.start()
-        finally:
-            del os.environ[process.SOLVER_OF]
-            if before is not None:
-                os.environ[process.SOLVER_OF] = before
-            theirs.close()
+        self._folder, self._number, self._lost = Path(tempfile.mkdtemp(prefix="solver-")), 0, False
+        self._process = process.start(self._source, self._folder, self._mark)
         try:
             return self._greeting()
         except BaseException:
@@ -170,24 +134,19 @@ class Remote:
             raise
 
     def _greeting(self) -> Abilities:
-        """Abilities of the solver. Raises `InputError` for one that is refused, or whose process is lost."""
+        """Return the abilities of the solver. Raises `InputError` for one that is refused, or whose process
+        is lost."""
         try:
-            reply, _ = process.receive(self._socket, seconds=START)
-            if reply.get("kind") == "refused":
-                raise InputError(str(reply["field"]), str(reply["value"]), str(reply["allowed"]))
-            self.identity = {name: readable(str(text)) for name, text in reply["identity"].items() if text}
-            return Abilities(**reply["abilities"])
-        except process.Late:
-            reason = f"no end within {START:g} s"
-        except (EOFError, OSError):
-            reason = f"its process died, {process.exit_text(self._exit_status())}"
-        except (process.Garbled, AttributeError, KeyError, TypeError):
-            reason = "its process sent something else than its abilities"
-        raise InputError("--solver", self._name, f"a solver whose import ends well ({reason})")
-
-    def _exit_status(self) -> int | None:
-        self._process.join(1.0)
-        return self._process.exitcode
+            said, _ = process.reply(self._process, self._folder / "0", START)
+            if "abilities" in said:
+                named = dict(said["identity"]).items()
+                self.identity = {name: readable(str(text)) for name, text in named if text}
+                return Abilities(**said["abilities"])
+            refused = {name: str(said[name]) for name in ("field", "value", "allowed")}
+        except (Reported, KeyError, TypeError, ValueError) as lost:
+            reason = f"a solver whose import ends well ({lost})"
+            raise InputError("--solver", self._name, reason) from None
+        raise InputError(**refused)
 
 
 def run(
@@ -202,7 +161,8 @@ def run(
     tick: Callable[[Result], None] = lambda result: None,
     left: Callable[[str], None] = lambda process: None,
 ) -> list[Result]:
-    """Results of the checks that match ``globs`` (all without any), with ``timeout`` seconds for one problem.
+    """Return the results of the checks that match ``globs`` (all without any), with ``timeout`` seconds for
+    one problem.
 
     ``among`` takes the place of the suite; ``name`` is what a refusal calls the solver. ``identified`` sees
     the solver's identity, ``begin`` and ``tick`` each check before and after, and ``left`` what the solver

@@ -45,13 +45,14 @@ Number = tuple[float, float, str]
 
 
 def contact_area(problem: ContactProblem, f: Array) -> Number:
-    """Area of the elements with a pressure (m^2)."""
+    """Return the area of the elements with a pressure (m^2)."""
     dA = problem.element_area
     return np.count_nonzero(f > 0) * dA, HALF_AN_ELEMENT * dA, "m^2"
 
 
 def approach(problem: ContactProblem, f: Array) -> Number | None:
-    """The approach as the problem counts it (m); None without load, and where a hardness leaves it open."""
+    """Return the approach as the problem counts it (m); None without load, and where a hardness leaves it
+    open."""
     if problem.approach is None and f.sum() <= 0:
         return None
     contact = f > 0
@@ -69,7 +70,7 @@ def approach(problem: ContactProblem, f: Array) -> Number | None:
 
 
 def mean_displacement(problem: ContactProblem, f: Array) -> Number:
-    """Mean of u over the domain (m), by pressure and shear."""
+    """Return the mean of u over the domain (m), by pressure and shear."""
     if problem.periodic:
         return 0.0, _rounding(problem, f), "m"
     right = float(reference_solution.displacement(problem, f).mean())
@@ -80,7 +81,7 @@ JUDGES = {"approach": approach, "contact_area": contact_area, "mean_displacement
 
 
 def _error_of_mean(problem: ContactProblem, f: Array, weights: Array | Mask) -> float:
-    """Largest difference (m) of two means of displacements with these weights, by the claim."""
+    """Return the largest difference (m) of two means of displacements with these weights, by the claim."""
     total = float(f.sum())
     if not total > 0:
         return _rounding(problem, f)

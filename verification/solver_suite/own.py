@@ -37,7 +37,7 @@ class Own:
         return f"refimpl {rf.__version__}"
 
     def __call__(self, problem: ContactProblem) -> Answer:
-        """The pressures; converged when the solution is certified.
+        """Return the pressures; converged when the solution is certified.
 
         An alternating contact edge is no success here: on it the problem, tau wherever f > 0, has no solution
         that the solver has found, though the pressures solve that without tau on a few elements.
@@ -55,7 +55,8 @@ class Own:
 
 
 def solved(problem: ContactProblem, tolerance: float, method: Method = "fft") -> rf.Solution:
-    """The problem's solution; ``tolerance`` is the suite's residual. Raises `Unsupported` as `scene` does."""
+    """Return the problem's solution; ``tolerance`` is the suite's residual. Raises `Unsupported` as `scene`
+    does."""
     return rf.solve(
         scene(problem),
         problem.shape,
@@ -68,7 +69,7 @@ def solved(problem: ContactProblem, tolerance: float, method: Method = "fft") ->
 
 
 def scene(problem: ContactProblem) -> rf.Scene:
-    """The problem as a scene: the gap is the upper body's surface, the lower one is flat.
+    """Return the problem as a scene: the gap is the upper body's surface, the lower one is flat.
 
     Raises `Unsupported` for a coupling that no pair of Poisson's ratios has.
     """
@@ -87,7 +88,8 @@ def scene(problem: ContactProblem) -> rf.Scene:
 
 
 def materials(reduced_modulus: float, shear_compliance: float) -> tuple[rf.Material, rf.Material]:
-    """Lower and upper body with this E* (Pa) and c0 (1/Pa): two alike, or a compressible and a rigid one.
+    """Return the lower and upper body with this E* (Pa) and c0 (1/Pa): two alike, or a compressible and a
+    rigid one.
 
     For a rigid partner ``pi c0 E* = (1 - 2 nu)/(2 (1 - nu))``, which is solved for nu.
 

@@ -29,19 +29,19 @@ the whole square, both ways along both axes."""
 
 
 def standing(M: int) -> Mask:
-    """Mask of the `PINS` on ``M`` elements a side."""
+    """Return the mask of the `PINS` on ``M`` elements a side."""
     contact = np.zeros((M, M), dtype=bool)
     contact[tuple(zip(*PINS, strict=True))] = True
     return contact
 
 
 def uneven(contact: Mask, seed: int) -> Array:
-    """Random pressures (Pa) from 0.3 of the peak up."""
+    """Return random pressures (Pa) from 0.3 of the peak up."""
     return np.where(contact, PEAK * np.random.default_rng(seed).uniform(0.3, 1.0, contact.shape), 0.0)
 
 
 def graded(contact: Mask, seed: int) -> Array:
-    """Pressures (Pa) from 0.3 % of the peak up, evenly in their logarithm, in random order.
+    """Return the pressures (Pa) from 0.3 % of the peak up, evenly in their logarithm, in random order.
 
     With much less, or much more tau than in these checks, a barely loaded pin can stand or not, both being
     solutions: the shear of the pin itself moves its neighbours, and they move it.
@@ -54,13 +54,15 @@ def graded(contact: Mask, seed: int) -> Array:
 
 @lru_cache(maxsize=4096)
 def integrals(i: int, j: int) -> tuple[float, float]:
-    """``I[1/rho]`` and ``I[x/rho^2]`` of a unit element at an offset of whole elements, from 50 digits."""
+    """Return ``I[1/rho]`` and ``I[x/rho^2]`` of a unit element at an offset of whole elements, from 50
+    digits."""
     at = float(abs(i)), float(abs(j)), 1.0, 1.0
     return float(kernel_reference.normal(*at)), float(np.sign(i) * kernel_reference.tangential(*at))
 
 
 def displacement(pressure: Array, coupling: Coupling | None, modulus: float) -> Array:
-    """Normal displacement (m) of the loaded elements of a free square of 1 m, summed element by element."""
+    """Return the normal displacement (m) of the loaded elements of a free square of 1 m, summed element by
+    element."""
     pins, M = np.argwhere(pressure > 0), len(pressure)
     u = np.zeros_like(pressure)
     for to in pins:

@@ -96,7 +96,7 @@ class ContactProblem:
     periodic : the domain repeats in both directions; otherwise the half-space is free around it
     tolerance : relative residual to reach: complementarity gap over elastic energy, and load balance
     coupling : friction, or None
-    hardness : at which pressures end (Pa), or None; posed only where the ability ``hardness`` is claimed
+    hardness : cap of the pressures (Pa), or None; posed only where the ability ``hardness`` is claimed
     spacing_y : edge of one element along y (m), that along x by default; another one only where the ability
         ``oblong_elements`` is claimed
 
@@ -249,7 +249,7 @@ class Abilities:
 
     @classmethod
     def named(cls, names: str, *, largest: int | None = None, precision: float = 1e-8) -> Abilities:
-        """Only the abilities in a comma-separated list.
+        """Return only the abilities in a comma-separated list.
 
         >>> Abilities.named("aperiodic,load,rectangle,oblong elements").periodic
         False
@@ -299,7 +299,7 @@ SolverUnderTest = Callable[[ContactProblem], "Answer | Array"]
 
 
 def abilities_of(solver: SolverUnderTest) -> Abilities:
-    """Its ``abilities`` attribute, or the defaults: squares of any size, without coupling.
+    """Return its ``abilities`` attribute, or the defaults: squares of any size, without coupling.
 
     Raises `InputError` when the attribute is no `Abilities`.
     """
@@ -355,7 +355,7 @@ def ask(solver: SolverUnderTest, problem: ContactProblem) -> Answer:
 
 
 def _numbers(answer: Answer) -> dict[str, float]:
-    """The numbers that an answer has, by name. Raises `BadAnswer` for what is no finite number."""
+    """Return the numbers that an answer has, by name. Raises `BadAnswer` for what is no finite number."""
     found = {name: getattr(answer, name) for name in NUMBERS if getattr(answer, name) is not None}
     for name, number in found.items():
         real = isinstance(number, numbers.Real) and not isinstance(number, bool)

@@ -11,8 +11,8 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.signal import fftconvolve
 
 from refimpl.grid import Array, Grid, Mask
 from verification.exact.fourier import symbol_at
@@ -27,7 +27,7 @@ _AT_HARDNESS = 1 - 1e-12
 
 
 def at_hardness(problem: ContactProblem) -> float:
-    """Pressure (Pa) from which an element counts as at the hardness; infinite without one."""
+    """Return the pressure (Pa) from which an element counts as at the hardness; infinite without one."""
     return np.inf if problem.hardness is None else problem.hardness * _AT_HARDNESS
 
 
@@ -45,12 +45,12 @@ class Residual(NamedTuple):
 
 
 def is_large(problem: ContactProblem) -> bool:
-    """True if a problem has too many elements for dense matrices."""
+    """Return True if a problem has too many elements for dense matrices."""
     return problem.gap.size > LARGEST**2
 
 
 def _matrix(problem: ContactProblem, direction: float | None) -> Array:
-    """``I[1/rho]``, or ``I[s/rho^2]`` along a direction, between all elements (m)."""
+    """Return ``I[1/rho]``, or ``I[s/rho^2]`` along a direction, between all elements (m)."""
     if is_large(problem):
         raise ValueError(f"{problem.gap.size} elements are too many for dense matrices")
     return problem.spacing * _unit_matrix(problem.shape, _edges(problem)[1], direction)
@@ -58,29 +58,33 @@ def _matrix(problem: ContactProblem, direction: float | None) -> Array:
 
 @lru_cache(maxsize=4)
 def _unit_matrix(shape: tuple[int, int], aspect: float, direction: float | None) -> Array:
-    """The same for elements of edge 1 along x and ``aspect`` along y."""
+    """Return the same for elements of edge 1 along x and ``aspect`` along y."""
     grid = Grid(shape, (float(shape[0]), shape[1] * aspect))
     return normal_matrix(grid) if direction is None else shear_matrix(grid, direction)
 
 
 def _edges(problem: ContactProblem) -> tuple[float, float]:
-    """Edges of an element in units of that along x."""
+    """Return the edges of an element in units of that along x."""
     return 1.0, problem.spacings[1] / problem.spacings[0]
 
 
 def by_pressure(problem: ContactProblem, pressure: Array) -> Array:
-    """Normal displacement ``a f`` (m) of both bodies by pressure alone."""
+    """Return the normal displacement ``a f`` (m) of both bodies by pressure alone."""
     if problem.periodic:
         return _filtered(pressure, symbol_at(*_waves(problem), problem.reduced_modulus))
     compliance = 1 / (np.pi * problem.reduced_modulus)
     if is_large(problem):
         offsets = normal_offsets(problem.shape, _edges(problem))
-        return np.asarray(compliance * problem.spacing * fftconvolve(offsets, pressure, mode="valid"))
+        return compliance * problem.spacing * _convolved(offsets, pressure)
     return compliance * np.asarray(_matrix(problem, None) @ pressure.ravel()).reshape(pressure.shape)
 
 
+def _convolved(offsets: Array, field: Array) -> Array:
+    return np.asarray(scipy.signal.fftconvolve(offsets, field, mode="valid"))  # a second to import
+
+
 def displacement(problem: ContactProblem, pressure: Array) -> Array:
-    """Normal displacement (m) by pressure and by the shear ``tau [f > 0] + beta f``."""
+    """Return the normal displacement (m) by pressure and by the shear ``tau [f > 0] + beta f``."""
     normal, coupling = by_pressure(problem, pressure), problem.coupling
     if coupling is None:
         return normal
@@ -92,14 +96,14 @@ def displacement(problem: ContactProblem, pressure: Array) -> Array:
         return normal + _filtered(shear, both - symbol_at(*_waves(problem), E))
     if is_large(problem):
         offsets = shear_offsets(problem.shape, direction, _edges(problem))
-        moved = np.asarray(problem.spacing * fftconvolve(offsets, shear, mode="valid"))
+        moved = problem.spacing * _convolved(offsets, shear)
     else:
         moved = np.asarray(_matrix(problem, direction) @ shear.ravel()).reshape(shear.shape)
     return normal + c0 * moved
 
 
 def symbols(problem: ContactProblem) -> tuple[Array, NDArray[np.complex128]]:
-    """Symbols of ``a`` and of ``a + beta c`` of a periodic problem (m/Pa)."""
+    """Return the symbols of ``a`` and of ``a + beta c`` of a periodic problem (m/Pa)."""
     waves, E, coupling = _waves(problem), problem.reduced_modulus, problem.coupling
     normal = symbol_at(*waves, E)
     if coupling is None:
@@ -121,7 +125,8 @@ def _filtered(field: Array, symbol: NDArray[np.complex128]) -> Array:
 
 
 def energy(problem: ContactProblem, pressure: Array) -> float:
-    """Elastic energy ``1/2 sum f (a f) dA`` (J). Raises ValueError for more than a double holds."""
+    """Return the elastic energy ``1/2 sum f (a f) dA`` (J). Raises ValueError for more than a double
+    holds."""
     with np.errstate(over="ignore", invalid="ignore"):
         stored = 0.5 * float(np.vdot(pressure, by_pressure(problem, pressure))) * problem.element_area
     if not np.isfinite(stored):
@@ -135,7 +140,7 @@ def stores_no_energy(problem: ContactProblem) -> bool:
 
 
 def residual(problem: ContactProblem, pressure: Array) -> Residual:
-    """Residuals of pressures (Pa) in the problem, recomputed from the pressures alone.
+    """Return the residuals of pressures (Pa) in the problem, recomputed from the pressures alone.
 
     gap : ``sum f (v - level) dA`` over the elastic energy; the level is ``min v`` under a load, and the
         approach where that is prescribed, with penetration counted on the whole load
@@ -170,7 +175,8 @@ def residual(problem: ContactProblem, pressure: Array) -> Residual:
 
 
 def _two_sided_gap(f: Array, v: Array, hardness: float, approach: float | None) -> float:
-    """``sum [f (v - d)+ + (H - f)(d - v)+]`` (Pa m), d being the approach or the mean of v that f weights.
+    """Return ``sum [f (v - d)+ + (H - f)(d - v)+]`` (Pa m), d being the approach or the mean of v that f
+    weights.
 
     It is the most that ``sum (f - g)(v - d)`` reaches for pressures g between the bounds, so at the load of
     the solution it bounds the squared error in the energy norm, whatever d is (see `misfit`).
@@ -188,7 +194,8 @@ def _two_sided_gap(f: Array, v: Array, hardness: float, approach: float | None) 
 
 
 def misfit(problem: ContactProblem, found: Array, exact: Array) -> float:
-    """``(f - f*) a (f - f*)`` over ``1/2 f* a f*``: the square of the relative error in the energy norm.
+    """Return ``(f - f*) a (f - f*)`` over ``1/2 f* a f*``: the square of the relative error in the energy
+    norm.
 
     It is at most the relative complementarity gap of ``f``, by the skewness of c for any coupling at fixed
     tau: with ``e = f - f*``, ``e' a e = e' (v - v*) <= f' (v - min v)``. (The periodic mean stores no energy;
@@ -201,7 +208,8 @@ def misfit(problem: ContactProblem, found: Array, exact: Array) -> float:
 
 
 def approach_of(problem: ContactProblem, pressure: Array) -> float:
-    """The approach (m) at which pressures solve the problem, as the problem counts it: mean of v over f.
+    """Return the approach (m) at which pressures solve the problem, as the problem counts it: mean of v over
+    f.
 
     Raises ValueError where there is no load to carry it.
     """
@@ -213,7 +221,8 @@ def approach_of(problem: ContactProblem, pressure: Array) -> float:
 
 
 def _flexibility(problem: ContactProblem) -> Array:
-    """Displacements (m/Pa) of all elements by all, frictionless or with beta. Raises ValueError for tau."""
+    """Return the displacements (m/Pa) of all elements by all, frictionless or with beta. Raises ValueError
+    for tau."""
     c, (n, m) = problem.coupling, problem.shape
     if c is not None and c.tau != 0:
         raise ValueError("elimination is for problems without tau")
@@ -230,7 +239,8 @@ def _flexibility(problem: ContactProblem) -> Array:
 
 
 def _on(problem: ContactProblem, matrix: Array, contact: Mask) -> tuple[Array, float]:
-    """Pressures (all elements) and approach from first contact on a contact set, by Gauss' elimination."""
+    """Return the pressures (all elements) and approach from first contact on a contact set, by Gauss'
+    elimination."""
     k, gap = np.flatnonzero(contact), problem.gap.ravel()
     block, approach, f = matrix[np.ix_(k, k)], problem.approach_from_touch, np.zeros(gap.size)
     if approach is not None:
@@ -248,7 +258,7 @@ def _on(problem: ContactProblem, matrix: Array, contact: Mask) -> tuple[Array, f
 
 
 def eliminated(problem: ContactProblem, limit: int = 100) -> Array:
-    """The solution (Pa) by block principal pivoting, for small problems without tau.
+    """Return the solution (Pa) by block principal pivoting, for small problems without tau.
 
     Starts from all elements in contact, or all that overlap at a prescribed approach; drops those in tension
     and adds those that penetrate until there are none. Raises RuntimeError where that does not end within

@@ -21,13 +21,13 @@ otherwise. `identity` has a digest that shows when it should be."""
 
 @cache
 def suite() -> tuple[Check, ...]:
-    """Every check of every module in `verification.solver_suite.checks`, in the modules' order."""
+    """Return every check of every module in `verification.solver_suite.checks`, in the modules' order."""
     names = [m.name for m in pkgutil.iter_modules(checks.__path__, prefix=f"{checks.__name__}.")]
     return tuple(check for name in names for check in importlib.import_module(name).CHECKS)
 
 
 def thorough() -> tuple[Check, ...]:
-    """The suite, with the problems of further covering arrays."""
+    """Return the suite, with the problems of further covering arrays."""
     from verification.solver_suite.checks.covering import further
 
     return (*suite(), *further())
@@ -41,7 +41,7 @@ def identity() -> dict[str, str | int]:
 
 
 def select(globs: Iterable[str] = (), among: tuple[Check, ...] | None = None) -> tuple[Check, ...]:
-    """The checks whose id (``solver/...``) matches a glob; all without any. ``!glob`` takes away.
+    """Return the checks whose id (``solver/...``) matches a glob; all without any. ``!glob`` takes away.
 
     ``among`` takes the place of the suite. Raises LookupError for a glob that matches none, and where all
     are taken away: an empty selection must not look like success.

@@ -76,7 +76,7 @@ def by_oracle(scene: rf.Scene, elements: int, method: Method = "fft", **options:
 
 
 def oracle_of(scene: rf.Scene, M: int, **options: Any) -> Oracle:
-    """The oracle of a scene by the options of `refimpl.solve`."""
+    """Return the oracle of a scene by the options of `refimpl.solve`."""
     return Oracle(
         scene, M,
         approach=options.get("approach"),
@@ -86,7 +86,7 @@ def oracle_of(scene: rf.Scene, M: int, **options: Any) -> Oracle:
 
 
 def sought(oracle: Oracle) -> str:
-    """Whether continuation finds a state that no solver found, and that obeys the law everywhere."""
+    """Return whether continuation finds a state that no solver found, and that obeys the law everywhere."""
     try:
         oracle.continued()
     except NotSettled as unsettled:
@@ -145,7 +145,7 @@ def exact_error(scene: rf.Scene, solution: rf.Solution, **options: Any) -> tuple
 
 
 def _untouched(oracle: Oracle, solution: rf.Solution) -> tuple[float, str]:
-    """No contact is right where the exact gap is nowhere below the approach."""
+    """Judge no contact: right where the exact gap is nowhere below the approach."""
     if oracle.approach is None:
         return 1.0, "no contact under a load"
     overlap = oracle.approach - min(oracle.h)

@@ -6,7 +6,6 @@ thread everywhere), so how many workers there are, and how often they were kille
 
 from __future__ import annotations
 
-import itertools
 import logging
 import multiprocessing
 import multiprocessing.connection
@@ -16,13 +15,12 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import (
-    FIRST_COMPLETED,
     CancelledError,
     Executor,
     Future,
     ProcessPoolExecutor,
     ThreadPoolExecutor,
-    wait,
+    as_completed,
 )
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager
@@ -38,10 +36,7 @@ from verification.sweep.run import CERTIFIED, Row, Run, execute
 from verification.sweep.store import open_store
 from verification.sweep.study import Study
 
-PER_WORKER = 2  # runs submitted per worker: one at work, one waiting
 CONNECT_SECONDS = 10.0  # for a scheduler to answer
-POLL_SECONDS = 1.0  # between two looks at whether a cluster is still there
-PATIENCE_SECONDS = 30.0  # for a new worker to come when the last one is lost
 
 
 @dataclass(frozen=True)
@@ -113,8 +108,8 @@ def sweep(
     ``workers`` processes, or with 0 this process itself, which then should have one BLAS thread;
     ``scheduler`` is the address of a dask.distributed cluster to use instead. A run that raises is reported
     in ``failures``, is not kept, and is tried again by the next sweep. Raises InputError for a store that
-    another sweep is using or a scheduler that cannot serve, WorkersLost when a worker process was killed, or
-    the scheduler or the last worker of a cluster is lost.
+    cannot be used or a scheduler that cannot serve, WorkersLost when a worker process was killed or the
+    scheduler is lost. A cluster that has lost its last worker is waited for.
     """
     started = time.perf_counter()
     # Points without roughness are the same run in every realisation, and are solved once.
@@ -128,7 +123,7 @@ def sweep(
         failures: dict[str, str] = {}
         if missing:
             executor = executor or stack.enter_context(_here(workers))
-            for run, done in _through(*executor, missing):
+            for run, done in _through(executor, missing):
                 failure = _failure(done)
                 if failure is None:
                     kept.add(run, *done.result())
@@ -145,7 +140,7 @@ Done = Iterator[tuple[Run, "Future[tuple[Row, float]]"]]
 
 
 def _failure(done: Future[tuple[Row, float]]) -> BaseException | None:
-    """What the run raised; raises WorkersLost where it is not the run's doing."""
+    """Return what the run raised; raises WorkersLost where it is not the run's doing."""
     try:
         failure = done.exception()
     except CancelledError as lost:
@@ -155,32 +150,23 @@ def _failure(done: Future[tuple[Row, float]]) -> BaseException | None:
     return failure
 
 
-def _through(executor: Executor, depth: int, check_alive: Callable[[], None], runs: Iterable[Run]) -> Done:
-    """Yield runs as they finish, ``depth`` submitted at a time; ``check_alive`` raises where none will."""
-    waiting: dict[Future[tuple[Row, float]], Run] = {}
-    queue = iter(runs)
-    while True:
-        for run in itertools.islice(queue, depth - len(waiting)):
-            waiting[executor.submit(execute, run.inputs)] = run
-        if not waiting:
-            return
-        finished, _ = wait(waiting, POLL_SECONDS, FIRST_COMPLETED)
-        if not finished:
-            check_alive()
-        for future in finished:
-            yield waiting.pop(future), future
-
-
-Workers = tuple[Executor, int, Callable[[], None]]
-"""An executor, the runs that it is given at a time, and a check whether it can still finish them."""
+def _through(executor: Executor, runs: Iterable[Run]) -> Done:
+    """Yield runs as they finish."""
+    waiting = {executor.submit(execute, run.inputs): run for run in runs}
+    for future in as_completed(waiting):
+        yield waiting.pop(future), future
 
 
 @contextmanager
-def _here(workers: int) -> Iterator[Workers]:
-    """This process, or fresh interpreters ('spawn') with one thread each, that end when this process does."""
+def _here(workers: int) -> Iterator[Executor]:
+    """Yield this process, or fresh interpreters ('spawn') with one thread each, that end when this process
+    does."""
     if workers == 0:
-        with ThreadPoolExecutor(1) as thread:
-            yield thread, 1, _alive
+        thread = ThreadPoolExecutor(1)
+        try:
+            yield thread
+        finally:
+            thread.shutdown(cancel_futures=True)
         return
     context = multiprocessing.get_context("spawn")
     with one_thread():
@@ -190,19 +176,15 @@ def _here(workers: int) -> Iterator[Workers]:
             for _ in range(workers):  # each starts a worker, as none is idle yet
                 executor.submit(int)
         try:
-            yield executor, PER_WORKER * workers, _alive
+            yield executor
             executor.shutdown()
         finally:
             executor.shutdown(wait=False, cancel_futures=True)
             kill_workers(before)  # the next sweep repeats unfinished runs
 
 
-def _alive() -> None:
-    """Processes of one's own need no check: one that dies breaks their pool."""
-
-
 def _end_with_parent() -> None:
-    """In a worker: leave when the parent is gone. A killed parent cannot tell its workers to stop."""
+    """Leave a worker when the parent is gone. A killed parent cannot tell its workers to stop."""
     parent = multiprocessing.parent_process()
     if parent is None:
         return
@@ -216,7 +198,7 @@ def _end_with_parent() -> None:
 
 
 @contextmanager
-def _cluster(address: str) -> Iterator[Workers]:
+def _cluster(address: str) -> Iterator[Executor]:
     """Use the workers of a running dask.distributed scheduler."""
     try:
         import distributed
@@ -236,20 +218,12 @@ def _cluster(address: str) -> Iterator[Workers]:
             raise InputError("--scheduler", address, allowed) from unreachable
         stack.callback(client.close, timeout=CONNECT_SECONDS)
 
-        def check_alive() -> None:
-            """Raise WorkersLost where the scheduler is lost, or no worker comes in time."""
-            try:
-                client.wait_for_workers(1, timeout=PATIENCE_SECONDS)
-            except (OSError, TimeoutError, CancelledError, ValueError) as lost:  # comm errors are OSErrors
-                what = "last worker of the cluster" if client.status == "running" else "scheduler"
-                raise WorkersLost(f"the {what} was lost") from lost
-
         threads = client.nthreads()
         if not threads or set(threads.values()) != {1}:
             found = f"{address} with workers of {sorted(threads.values())} threads"
             allowed = "workers of one thread each (dask worker --nthreads 1)"
             raise InputError("--scheduler", found, allowed)
-        yield client.get_executor(pure=False), PER_WORKER * len(threads), check_alive
+        yield client.get_executor(pure=False)
 
 
 class _Meter:
@@ -262,7 +236,7 @@ class _Meter:
         tick(Progress(self._done, total, 0, None))
 
     def count(self, run: Run, *, failed: bool) -> None:
-        """One run is finished."""
+        """Record one finished run."""
         self._done += not failed
         self._failed += failed
         self._worked += run.weight

@@ -73,13 +73,13 @@ def named(row: Row) -> Row:
 
 
 def _with_own_columns(rows: Sequence[Row]) -> tuple[list[Row], list[str]]:
-    """The rows, and names of their columns: after all others, what the study varies by full names."""
+    """Return the rows, and names of their columns: after all others, what the study varies by full names."""
     own = dict.fromkeys(name for row in rows for name in named(row))
     return [row | named(row) for row in rows], [*EXPORTED, *own]
 
 
 def to_csv(rows: Sequence[Row]) -> str:
-    """CSV text with a header; floats in their shortest exact form, None as an empty field.
+    """Return CSV text with a header; floats in their shortest exact form, None as an empty field.
 
     >>> to_csv([]).split(",")[:3]
     ['key', 'realisation', 'grid']

@@ -47,7 +47,7 @@ _TEXTS: Mapping[str, tuple[str, str]] = {
 }
 """Type and meaning of each key."""
 _AXES: Mapping[str, tuple[str, str]] = {
-    "grid": ("", "elements along the longer side; needed unless `[solve]` has an accuracy"),
+    "grid": ("", "elements along the longer side; not set: 256, or each map's own points, up to 512"),
     "upper_rms": ("m", "rms height of the upper body's roughness; 0 removes that roughness"),
     "lower_rms": ("m", "rms height of the lower body's roughness; 0 removes that roughness"),
     "correlation_length": ("m", "that of all Gaussian parts"),
@@ -76,7 +76,7 @@ def study_keys() -> dict[str, tuple[Key, ...]]:
 
 
 def uses(kind: str) -> dict[str, str]:
-    """Return, by full name, whether a study may vary a parameter and whether it may have a tolerance.
+    """Return by full name, whether a study may vary a parameter and whether it may have a tolerance.
 
     The scene has that kind of surface on its lower body, and no number that is zero.
 
@@ -93,7 +93,8 @@ def uses(kind: str) -> dict[str, str]:
 
 
 def _study() -> tuple[Key, ...]:
-    """The keys of the file itself; defaults are those of the study that a file of two lines becomes."""
+    """Return the keys of the file itself; defaults are those of the study that a file of two lines
+    becomes."""
     made = study_from_dict({"scene": _BASE["scene"], "vary": _BASE["vary"]})
     defaults = {name: as_toml(getattr(made, name)) for name in ("realisations", "first_seed", "normalise")}
     defaults |= {"scene": REQUIRED, "vary": "-", "solve": "-"}
@@ -121,7 +122,7 @@ def _solve() -> tuple[Key, ...]:
 
 
 def _refusal(table: str, key: str) -> str:
-    """What the refusal of a wrong entry of a table of the study allows."""
+    """Return what the refusal of a wrong entry of a table of the study allows."""
     known = {"accuracy": 0.1} if key == "quantity" else {}
     base = {} if known else _BASE["vary"]
 

@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Any
 
 from refimpl.driver.options import Options
-from refimpl.errors import InputError
+from refimpl.errors import InputError, size_text
 from refimpl.model.problem import Terms
 from refimpl.planning.plan import memory_of
 from refimpl.scene.scene import Scene
-from refimpl.scene.scene_file import scene_from_dict
-from verification.sweep.study import Study
+from refimpl.scene.scene_file import scene_from_dict, scene_to_dict
+from verification.sweep.study import Study, measured_paths
 
 FINEST = 256  # elements a side that heights are sampled on: 0.01 s, and 0.4 % from where the domain ends
 _SWITCHES = ("oblique", "slope_correction")
@@ -72,17 +72,29 @@ def _sample(study: Study) -> None:
 def check_memory(study: Study) -> None:
     """Raise InputError where the finest grid does not fit into this machine's free memory."""
     scene = next(_closest(study))
-    memory_of(study.settings.get("method", "fft"), scene.grid(study.finest))
+    memory_of(
+        study.settings.get("method", "fft"), scene.grid(max(study.vary.get("grid", (scene.default_grid,))))
+    )
 
 
-def covered_size(study: Study) -> tuple[float, float]:
-    """Return the largest rectangle (m) that all measured surfaces cover over all offsets of a study."""
-    x, y = zip(*(scene.lengths for scene in _closest(study)), strict=True)
-    return min(x), min(y)
+def covered_size(study: Study) -> tuple[tuple[float, float], str]:
+    """Return the largest rectangle (m) that all measured surfaces cover over all offsets of a study.
+
+    The text names the files of the smallest scene, where another is larger.
+    """
+    scenes = list(_closest(study))
+    least, most = (choose(scenes, key=lambda scene: math.prod(scene.lengths)) for choose in (min, max))
+    size = min(scene.lengths[0] for scene in scenes), min(scene.lengths[1] for scene in scenes)
+    if least.lengths == most.lengths:
+        return size, ""
+    files = (Path(path).name for path in measured_paths(scene_to_dict(least)))
+    shown = ", ".join(dict.fromkeys(files))
+    return size, f", by {shown}; the largest scene has {size_text(most.lengths)} m"
 
 
 def _closest(study: Study) -> Iterator[Scene]:
-    """The scenes that come closest to a limit of their heights; slides of one scene share its surfaces."""
+    """Yield the scenes that come closest to a limit of their heights; slides of one scene share its
+    surfaces."""
     turns = study.vary.get("sliding_direction", (study.scene["sliding_direction"],))
     nearest = (max(turns, key=lambda phi: abs(component(phi))) for component in (math.cos, math.sin))
     directions = tuple(dict.fromkeys(nearest))
@@ -96,7 +108,8 @@ def _closest(study: Study) -> Iterator[Scene]:
 
 
 def _ends(axis: str, values: Sequence[Any]) -> tuple[Any, ...]:
-    """The values of an axis that come closest to a limit: all files; one of what limits do not depend on."""
+    """Return the values of an axis that come closest to a limit: all files; one of what limits do not depend
+    on."""
     if axis.endswith(".path"):
         return tuple(values)
     if axis.endswith(".seed"):

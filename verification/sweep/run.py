@@ -27,8 +27,8 @@ COORDINATES = (
     "sliding_direction", "sliding_offset", "tau", "beta", "parameters",
 )  # fmt: skip
 """What tells the runs of one study apart; SI units and rad, None where a scene has no such thing, and for the
-grid where an accuracy is requested. ``parameters`` is the JSON text of the numbers of materials and surfaces
-that the study varies by their full names.
+grid where none is given. ``parameters`` is the JSON text of the numbers of materials and surfaces that the
+study varies by their full names.
 """
 
 _OF_A_RUN = (
@@ -50,7 +50,7 @@ CERTIFIED = (rf.Status.CONVERGED.value, rf.Status.CYCLED.value)
 """Statuses of rows whose numbers are solutions, as `refimpl.Solution.converged` has it."""
 
 UNKNOWN_GRID = 256
-"""Elements a side that runs with a requested accuracy count as."""
+"""Elements a side that runs without a given grid count as."""
 
 Row = dict[str, Any]
 
@@ -85,8 +85,8 @@ class Run:
 
 @cache
 def code_digest() -> str:
-    """Digest of every source file of `refimpl` in this process's installation, and of the libraries' versions
-    that its last digits depend on.
+    """Return the digest of every source file of `refimpl` in this process's installation, and of the
+    libraries' versions that its last digits depend on.
     """
     root = Path(rf.__file__).parent
     digest = hashlib.sha256()
@@ -99,7 +99,7 @@ def code_digest() -> str:
 
 
 def file_digest(path: Path) -> str:
-    """Digest of a measured surface's file."""
+    """Return the digest of a measured surface's file."""
     return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
 
 
@@ -121,7 +121,7 @@ def execute(inputs: Mapping[str, Any]) -> tuple[Row, float]:
 
 
 def outcome(solution: rf.Solution, scene: rf.Scene) -> Row:
-    """The row of a solution of a scene."""
+    """Return the row of a solution of a scene."""
     contact, pair = solution.contact, solution.details.problem.pair
     index = None
     if pair.softer_hardness is not None:

@@ -1,8 +1,7 @@
 """Results kept in one SQLite file: a row per finished run, written at once or not at all.
 
 The journal is a write-ahead log, so that a run is either in the table or not after a kill at any moment, and
-others may read while a sweep writes. A second sweep is refused by a lock file beside the store, the same for
-all links to it, which the system releases when the holder dies, however it dies.
+others may read while a sweep writes. Of two sweeps that finish the same run the first one's row is kept.
 
 Damage is found before it is used: on opening, the file's structure, its schema and the checksum of every row
 are compared with what this module writes. A refusal deletes nothing: a new store may stay, without runs.
@@ -20,24 +19,20 @@ from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from filelock import FileLock, Timeout
-
 from refimpl.errors import InputError
 from verification.sweep.run import COORDINATES, OUTCOMES, Row, Run
 
-APPLICATION_ID = 0x52465357  # "RFSW": says whose file this is
-VERSION = 5
 COLUMNS = ("key", *COORDINATES, *OUTCOMES)
 _DATABASE = b"SQLite format 3\0"
-_JOURNAL = b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7"  # left where a store's creation was killed
+_JOURNALS = (b"", b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", bytes(8))  # begin of what a killed creation leaves
 BUSY_SECONDS = 5.0  # for another program to end its transaction
 _ALL = (*COLUMNS, "inputs", "seconds", "checksum")
-_TABLE = f"""CREATE TABLE runs (
+_TABLE = f"""runs (
     key text primary key,
     {", ".join((*COORDINATES, *OUTCOMES))},
     inputs text not null, seconds real not null, checksum text not null
 ) without rowid"""
-_INSERT = f"insert into runs values ({', '.join('?' * len(_ALL))})"
+_INSERT = f"insert or ignore into runs values ({', '.join('?' * len(_ALL))})"
 _SELECT = f"select {', '.join(_ALL)} from runs"
 
 
@@ -52,7 +47,7 @@ class Store:
         return {key for (key,) in self._connection.execute("select key from runs")}
 
     def add(self, run: Run, row: Row, seconds: float) -> None:
-        """Keep a finished run. Raises sqlite3.IntegrityError for one that is there already."""
+        """Keep a finished run, unless it is there already."""
         values = [run.key, *run.coordinates.values(), *(row[name] for name in OUTCOMES)]
         every = (*values, run.canonical, seconds)  # SQLite keeps NaN as NULL
         values = [None if isinstance(value, float) and math.isnan(value) else value for value in every]
@@ -79,7 +74,7 @@ class Store:
 
 
 def checksum(values: Sequence[Any]) -> str:
-    """64 bits of the SHA-256 of a row's values; floats by their shortest exact form.
+    """Return 64 bits of the SHA-256 of a row's values; floats by their shortest exact form.
 
     >>> checksum(["key", 1.0, None]) == checksum(["key", 1, None])
     False
@@ -93,8 +88,8 @@ def damaged_row(path: Path, key: object) -> InputError:
 
 
 def files_of(store: Path) -> tuple[Path, ...]:
-    """Return the store, its lock, and what SQLite keeps beside it."""
-    return tuple(store.with_name(store.name + end) for end in ("", ".lock", "-wal", "-shm", "-journal"))
+    """Return the store, and what SQLite keeps beside it."""
+    return tuple(store.with_name(store.name + end) for end in ("", "-wal", "-shm", "-journal"))
 
 
 @contextmanager
@@ -102,60 +97,45 @@ def open_store(path: Path) -> Iterator[Store]:
     """Open or create a store for one sweep.
 
     Raises InputError for a file that is not a store, is damaged, cannot be written, has several names, or is
-    in use by another sweep or program; and in the block where SQLite cannot read or write it any more, or it
-    is no longer at its path.
+    locked by another program; and in the block where SQLite cannot read or write it any more, or it is no
+    longer at its path.
     """
     path = Path(os.path.realpath(path))
-    with _locked(path), closing(_connect(path)) as connection:
+    _make(path)
+    with closing(_connect(path)) as connection:
         store = Store(connection, path)
         try:
             yield store
-        except sqlite3.IntegrityError:
-            raise
         except sqlite3.Error as refused:
             raise _unusable(path, refused) from refused
         store.check_place()
 
 
-@contextmanager
-def _locked(path: Path) -> Iterator[None]:
-    """Lock the store at the path, which is made where there is none."""
+def _make(path: Path) -> None:
+    """Make the file at the path where there is none."""
     _check_places(path)
-    lock = FileLock(f"{path}.lock", timeout=0)
     try:
         path.open("ab").close()
-        if (names := os.stat(path).st_nlink) > 1:
-            several = f"{path} of {names} names (hard links)"
-            raise InputError("store", several, "one name: SQLite keeps its log beside it")
-        lock.acquire()
-        ours = os.stat(lock.lock_file)
-    except Timeout as held:
-        raise _refusal(path, "a file that no other sweep is using now") from held
+        names = os.stat(path).st_nlink
     except OSError as refused:
         raise _refusal(path, f"a file that can be written ({refused.strerror})") from refused
-    try:
-        yield
-    finally:
-        with suppress(OSError):  # Windows keeps the file, which is open
-            if os.path.samestat(os.stat(lock.lock_file), ours):
-                os.unlink(lock.lock_file)  # before its release: who has opened it meanwhile finds it gone
-        lock.release()
+    if names > 1:
+        several = f"{path} of {names} names (hard links)"
+        raise InputError("store", several, "one name: SQLite keeps its log beside it")
 
 
 def _check_places(path: Path) -> None:
     """Raise InputError for what is no file, or a file of somebody else that a sweep would overwrite."""
-    store, lock, *kept = files_of(path)
-    for file in (store, lock, *kept):
+    store, *kept = files_of(path)
+    for file in (store, *kept):
         if os.path.exists(file) and not os.path.isfile(file):  # no error for long names
             raise _refusal(file, "a regular file")
     head = _begin(store)
     if head not in (b"", _DATABASE):
         raise _refusal(store, "an SQLite file of 'sweep', or a new file")
-    others = [] if head else [file for file in kept if _begin(file) and not _begin(file).startswith(_JOURNAL)]
-    if os.path.exists(lock) and os.path.getsize(lock):  # a sweep's own lock is empty
-        others.append(lock)
-    for file in others:
-        raise _refusal(file, "no file beside the store that is none of its own")
+    for file in () if head else kept:
+        if _begin(file)[:8] not in _JOURNALS:
+            raise _refusal(file, "no file beside the store that is none of its own")
 
 
 def _begin(path: Path) -> bytes:
@@ -173,13 +153,8 @@ def _connect(path: Path) -> sqlite3.Connection:
     except sqlite3.Error as refused:
         raise _unusable(path, refused) from refused
     try:
-        tables = connection.execute("select count(*) from sqlite_master").fetchone()[0]
-        if tables == 0 and _pragma(connection, "application_id") == 0:  # new, or its creation was killed
-            connection.execute("begin immediate")
-            connection.execute(f"pragma application_id = {APPLICATION_ID}")
-            connection.execute(f"pragma user_version = {VERSION}")
-            connection.execute(_TABLE)
-            connection.execute("commit")
+        if not _schema(connection) and not path.stat().st_size:  # new, or its creation was killed
+            connection.execute(f"create table if not exists {_TABLE}")
         _check(connection, path)
         connection.execute("pragma journal_mode = wal")
         connection.execute("pragma synchronous = normal")
@@ -192,12 +167,8 @@ def _connect(path: Path) -> sqlite3.Connection:
 
 
 def _check(connection: sqlite3.Connection, path: Path) -> None:
-    """Raise InputError for a file of another program or version, another schema, or damage."""
-    ours = {"application_id": APPLICATION_ID, "user_version": VERSION}
-    if {name: _pragma(connection, name) for name in ours} != ours:
-        raise _refusal(path, f"a file of 'sweep', format version {VERSION}")
-    schema = connection.execute("select type, name, tbl_name, sql from sqlite_master").fetchall()
-    if schema != [("table", "runs", "runs", _TABLE)]:
+    """Raise InputError for another schema, as of another program or version, or damage."""
+    if _schema(connection) != [("table", "runs", "runs", f"CREATE TABLE {_TABLE}")]:
         raise _refusal(path, "a file of 'sweep' with its table and nothing else")
     (found,) = connection.execute("pragma integrity_check(1)").fetchone()
     if found != "ok":
@@ -208,8 +179,8 @@ def _check(connection: sqlite3.Connection, path: Path) -> None:
             raise damaged_row(path, key)
 
 
-def _pragma(connection: sqlite3.Connection, name: str) -> int:
-    return int(connection.execute(f"pragma {name}").fetchone()[0])
+def _schema(connection: sqlite3.Connection) -> list[tuple[str, ...]]:
+    return connection.execute("select type, name, tbl_name, sql from sqlite_master").fetchall()
 
 
 def _unusable(path: Path, refused: Exception) -> InputError:

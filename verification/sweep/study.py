@@ -51,7 +51,7 @@ class Study:
     unusable: Mapping[tuple[str, str], str] = field(default_factory=dict)
 
     def runs(self) -> Iterator[Run]:
-        """All runs, realisations outermost, then the axes in the order of `AXES`."""
+        """Yield all runs, realisations outermost, then the axes in the order of `AXES`."""
         files = self.measured
         axes = (*AXES, *self.own_axes)
         values = [self.vary.get(axis, (None,)) for axis in axes]
@@ -72,7 +72,7 @@ class Study:
 
     @property
     def finest(self) -> int:
-        """Elements along the longer side of the finest grid; a usual one with an accuracy."""
+        """Elements along the longer side of the finest grid; a usual one where none is given."""
         return int(max(self.vary.get("grid", (UNKNOWN_GRID,))))
 
     @property
@@ -150,12 +150,13 @@ class Study:
 
 
 def _random(body: Table) -> Table:
-    """The random part of a body; an empty table without one."""
+    """Return the random part of a body; an empty table without one."""
     return next((part for part in body["surface"] if part["kind"] in RANDOM), {})
 
 
 def _length(scene: Table) -> float | None:
-    """The correlation length of the scene's roughness; None without one, or where there are several."""
+    """Return the correlation length of the scene's roughness; None without one, or where there are
+    several."""
     found = [_random(scene[name]).get("correlation_length") for name in ("upper", "lower")]
     lengths = [length for length in found if length is not None]
     same = lengths and isinstance(lengths[0], float) and lengths.count(lengths[0]) == len(lengths)
@@ -163,7 +164,7 @@ def _length(scene: Table) -> float | None:
 
 
 def _changed(part: Table, own: Mapping[str, Any]) -> Table:
-    """A surface's table with other values; ``key[j]`` is one of a list."""
+    """Return a surface's table with other values; ``key[j]`` is one of a list."""
     for name, value in own.items():
         key, _, place = name.partition("[")
         old = part[key]

@@ -24,7 +24,7 @@ SOLVE_KEYS = ("method", "oblique", "slope_correction", "tolerance", "accuracy", 
 
 
 def read_study(path: str | Path, *, keep_going: bool = False) -> Study:
-    """The study of a TOML file, or a shipped study by its name (see `shipped_studies`).
+    """Return the study of a TOML file, or a shipped study by its name (see `shipped_studies`).
 
     With ``keep_going``, varied files that cannot be used are skipped, and listed in ``unusable``.
     The scene is a shipped one's name or a path relative to the file. Raises InputError naming the field.
@@ -39,7 +39,7 @@ def read_study(path: str | Path, *, keep_going: bool = False) -> Study:
 
 
 def shipped_studies() -> tuple[str, ...]:
-    """Names of the studies that ship as package data.
+    """Return the names of the studies that ship as package data.
 
     >>> "table3" in shipped_studies()
     True
@@ -49,7 +49,8 @@ def shipped_studies() -> tuple[str, ...]:
 
 
 def study_from_dict(table: Mapping[str, Any], folder: Path = Path(), *, keep_going: bool = False) -> Study:
-    """The study of a parsed TOML table, with all that its runs would be refused for refused (`posable`)."""
+    """Return the study of a parsed TOML table, refused for all that its runs would be refused for
+    (`posable`)."""
     _refuse_unknown("study", table, KEYS)
     name = table.get("scene")
     if not isinstance(name, str) or not name:
@@ -83,17 +84,17 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path(), *, keep_goi
     study = _with_usable_files(study, keep_going)
     study = replace(study, files=(scene_file, *map(Path, study.measured)))
     if "side" not in scene and "size" not in scene:
-        x, y = posable.covered_size(study)
-        note = (
-            f"no size given: {x:.6g} x {y:.6g} m, the largest that all measured surfaces cover at all offsets"
-        )
+        (x, y), limited = posable.covered_size(study)
+        covered = "the largest that all measured surfaces cover at all offsets"
+        note = f"no size given: {x:.6g} x {y:.6g} m, {covered}{limited}"
         study = replace(study, scene=scene | {"size": [x, y]}, notes=(note,))
     _check(study)
     return study
 
 
 def _with_usable_files(study: Study, keep_going: bool) -> Study:
-    """The study without the varied files that are refused; without ``keep_going`` all of them at once."""
+    """Return the study without the varied files that are refused; without ``keep_going`` all of them at
+    once."""
     unusable = posable.unusable_files(study)
     if unusable and not keep_going:
         said = "".join(f"\n  {reason}" for reason in unusable.values())
@@ -129,8 +130,6 @@ def _check(study: Study) -> None:
         raise InputError(
             "vary.grid", study.vary["grid"], "none beside solve.accuracy, which chooses the grid"
         )
-    if "accuracy" not in study.settings and "grid" not in study.vary:
-        raise InputError("vary.grid", None, "elements per side, or an accuracy in [solve]")
     runs = math.prod([study.realisations, *map(len, study.vary.values())])
     if runs > MAX_RUNS:
         raise InputError("vary", f"{runs} runs", f"at most {MAX_RUNS} runs")
@@ -158,7 +157,7 @@ def _check(study: Study) -> None:
 
 
 def _check_settings(settings: Mapping[str, Any]) -> None:
-    """The [solve] table: what `refimpl.solve` would refuse, before there is a store or a worker."""
+    """Check the [solve] table: what `refimpl.solve` would refuse, before there is a store or a worker."""
     _refuse_unknown("solve", settings, SOLVE_KEYS)
     if settings.get("method", "fft") not in METHODS:
         raise InputError("solve.method", settings["method"], f"one of {', '.join(METHODS)}")
@@ -174,7 +173,7 @@ def _check_settings(settings: Mapping[str, Any]) -> None:
 
 
 def _by_axis(vary: Mapping[str, Any]) -> dict[str, Any]:
-    """The table with the full names of tau and beta as the axes that they are."""
+    """Return the table with the full names of tau and beta as the axes that they are."""
     axes = {f"friction.{axis}": axis for axis in FRICTION_AXES}
     for name, axis in axes.items():
         if name in vary and axis in vary:
@@ -193,7 +192,7 @@ def _refuse_doubles(vary: Mapping[str, Any]) -> None:
 
 
 def _values(axis: str, values: object, folder: Path) -> tuple[Any, ...]:
-    """The values of an axis; files relative to the study's folder, where they are found there."""
+    """Return the values of an axis; files relative to the study's folder, where they are found there."""
     if axis.endswith(".path"):
         return _paths(axis, values, folder)
     allowed = "a finite number, or a list of different ones"

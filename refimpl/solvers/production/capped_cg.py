@@ -1,4 +1,4 @@
-"""Projected CG with a second bound: pressures end at the hardness, ``0 <= f <= H``.
+"""Projected CG with a second bound: pressures are capped at the hardness, ``0 <= f <= H``.
 
 CG works on the free elements, ``0 < f < H``. Elements that reach H leave them and keep that pressure; they
 come back where ``v`` exceeds the approach, as less pressure would do there. The load's target for the free
@@ -95,7 +95,7 @@ class CappedCG(ProjectedCG):
         return super().undecided(stiffness, among) if below_cap else self.capped.size
 
     def iterate(self) -> None:
-        """One step on the free elements, then the exchange of elements at both bounds."""
+        """Take one step on the free elements, then the exchange of elements at both bounds."""
         if self.free.any():
             self._step()
         self._separation = None
@@ -216,7 +216,7 @@ class CappedCG(ProjectedCG):
             self.normal_displacement = self._apply(self.pressure)
 
     def _deepest_first(self) -> Array:
-        """The cap on the capped elements in the order of ``v``, as far as the target goes."""
+        """Return the cap on the capped elements in the order of ``v``, as far as the target goes."""
         assert self._target is not None
         order = np.argsort(np.where(self.capped, self.separation, math.inf), axis=None, kind="stable")
         most = (self._cap * self._K * self.capped).ravel()[order]

@@ -16,9 +16,9 @@ from refimpl.operators.influence import whole_grid_influence
 from refimpl.solvers.production.anderson import AndersonMixing
 from refimpl.solvers.production.constants import SETTLED, SETTLING_LIMIT
 
-_LEAST_SHARE = 0.1  # of the hardness on the whole domain; slopes of 84 degrees would carry no more
+_LEAST_SHARE = 0.1  # share of the hardness on the whole domain; slopes of 84 degrees would carry no more
 _ROUNDING = 1e-12  # relative, of the load of that state
-_MARGIN = 1e-4  # of that load; a few elements below the hardness leave smaller slopes on others: up to 6e-6
+_MARGIN = 1e-4  # share of that load; elements below the hardness leave smaller slopes on others, to 6e-6
 #                 more was carried in 26 random scenes, each at eight approaches
 
 

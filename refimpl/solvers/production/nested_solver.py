@@ -8,6 +8,7 @@ from refimpl.grid import Array, Mask, Window, inner, resampled
 from refimpl.model.certificate import State, certify, relative_gap
 from refimpl.model.problem import Problem
 from refimpl.model.state import SolverResult
+from refimpl.operating_system import return_free_memory
 from refimpl.operators.fft import Counter
 from refimpl.operators.influence import WindowInfluence, whole_grid_influence, window_influence
 from refimpl.operators.preconditioner import Apply, SpectralPreconditioner, extended
@@ -23,6 +24,8 @@ from refimpl.solvers.production.coarse_grids import (
 from refimpl.solvers.production.constants import MARGIN, START_MISFIT
 from refimpl.solvers.production.level import LevelSolver
 from refimpl.solvers.tau_active_set import first_set
+
+_LARGE = 2_000_000  # elements from which memory kept for the next solve counts more than its time
 
 
 def solve_fft(
@@ -51,6 +54,8 @@ def solve_fft(
         result, window = solver.result(tolerance), solver.window
         too_small, needs_mixing = solver.window_too_small, solver.needs_mixing
         del solver  # frees its memory before the arrays of the whole grid are made
+        if problem.gap.size >= _LARGE:
+            return_free_memory()
         needed = window.mask(problem.grid.shape)
         if not too_small:
             state = certified(problem, result, counter)
@@ -62,7 +67,7 @@ def solve_fft(
 
 
 def _misfit(problem: Problem, start: InitialGuess) -> float:
-    """Relative error of a start as a solution on its own grid: of the load, and of the contact."""
+    """Return the relative error of a start as a solution on its own grid: of the load, and of the contact."""
     f, v = start.pressure, start.displacement + problem.gap
     total, energy = float(f.sum()), 0.5 * inner(f, start.displacement)
     gap = relative_gap(inner(f, v) - total * float(v.min()), energy)
@@ -87,7 +92,7 @@ def from_guess(problem: Problem, start: InitialGuess, counter: Counter, toleranc
 
 
 def _prolonged(problem: Problem, start: InitialGuess) -> tuple[Window, Array, Array, Mask]:
-    """A window; on it the prolonged pressure, the approach minus its ``v``, and the likely contact."""
+    """Return a window; on it the prolonged pressure, the approach minus its ``v``, and the likely contact."""
     grid = problem.grid
     v = resampled(start.displacement, grid.shape) + problem.gap
     pressure = resampled(start.pressure, grid.shape)
@@ -101,13 +106,13 @@ def _prolonged(problem: Problem, start: InitialGuess) -> tuple[Window, Array, Ar
 def _operators(
     problem: Problem, window: Window, counter: Counter, tolerance: float
 ) -> tuple[WindowInfluence, Apply]:
-    """The influence of a window on itself, and its preconditioner."""
+    """Return the influence of a window on itself, and its preconditioner."""
     operator = window_influence(problem.grid, problem.direction, window, counter, tolerance)
     return operator, SpectralPreconditioner(operator, problem.elasticity.symbol(operator.symbol))
 
 
 def _from_winkler(problem: Problem, counter: Counter, tolerance: float) -> LevelSolver:
-    """The solver of a grid without an initial guess."""
+    """Return the solver of a grid without an initial guess."""
     operator, precondition = _operators(problem, problem.grid.window, counter, tolerance)
     return LevelSolver(problem, operator, precondition, winkler_pressure(problem))
 

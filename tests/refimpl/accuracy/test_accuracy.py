@@ -74,7 +74,6 @@ def test_the_area_counts_on_request_and_without_friction(scene: rf.Scene, quanti
 @pytest.mark.parametrize(
     ("arguments", "field"),
     [
-        ({}, "grid"),
         ({"grid": 64, "accuracy": 0.1}, "grid"),
         ({"grid": 32, "max_grid": 64}, "max_grid"),
         ({"accuracy": 0.0}, "accuracy"),

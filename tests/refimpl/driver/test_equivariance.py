@@ -67,7 +67,7 @@ def renamed(parameter: str, image: Image) -> str:
 @pytest.mark.parametrize(
     ("seed", "name"),
     [
-        (seed, name)
+        pytest.param(seed, name, marks=[] if seed < 9002 else [pytest.mark.nightly])
         for seed in range(9000, 9004)
         for name, image in IMAGES.items()
         if random_scene(seed).scene.periodic or not image.periodic

@@ -8,10 +8,11 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.driver import refined
+from refimpl.driver import on_grid
 from refimpl.driver.limits import Allowance, Limits
 from refimpl.driver.options import Options
 from refimpl.planning import terms
@@ -157,10 +158,22 @@ def test_the_sum_of_all_effects_is_held_to_the_budget(
         sizes = {"coupled": share, "oblique": share + 0.01}
         return {name: Effect(sizes.get(name, 0.0) * plan.budget, 0.0) for name in names}
 
-    monkeypatch.setattr(refined, "effects_in", effects)
+    monkeypatch.setattr(on_grid, "effects_in", effects)
     found = rf.solve(STIFF, accuracy=0.05)
     assert found.plan.includes("oblique") is restored
     assert not found.plan.includes("coupled")
+
+
+@pytest.mark.parametrize("share", [0.9, 1.1])
+def test_a_single_grid_is_solved_again_with_a_term_that_its_contact_shows_to_matter(
+    monkeypatch: pytest.MonkeyPatch, share: float
+) -> None:
+    scene = replace(STIFF, friction=rf.Friction())
+    plan = Options(scene=scene, grid=16).plan()
+    assert plan.neglected == ("oblique",)
+    effects = {"oblique": Effect(0.0, share * plan.budget)}
+    monkeypatch.setattr(on_grid, "effects_in", lambda names, *_: {name: effects[name] for name in names})
+    assert rf.solve(scene, 16).plan.includes("oblique") is (share > 1)
 
 
 def test_a_cap_that_pressures_reach_costs_both_solves(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -174,3 +187,18 @@ def test_a_cap_that_pressures_reach_costs_both_solves(monkeypatch: pytest.Monkey
     found = rf.solve(scene, 16)
     assert found.max_pressure == capped.max_pressure == 0.3e9
     assert found.cost.point_logs == elastic.cost.point_logs + capped.cost.point_logs
+
+
+@pytest.mark.parametrize(
+    ("heights", "side", "said"),
+    [
+        (1e-6, 1e-5, r"lower.surface\[0\] = 'array': expected heights of .*: rms slope .* unit"),
+        (1e-9, 1e-6, r"load = 2.0: expected the domain is only 1e-06 x 1e-06 m \(units"),
+        (1e-8, 1e-5, r"load = 2.0: expected at most 0.02 N, the softer"),
+    ],
+)
+def test_sizes_of_a_map_are_doubted_before_its_load(heights: float, side: float, said: str) -> None:
+    z = heights * np.random.default_rng(1).normal(size=(64, 64))
+    scene = rf.Scene(BALL, rf.Body(SOFT, z), rf.Friction(1e6, 0.05), 2.0, side=side)
+    with pytest.raises(rf.InputError, match=f"^{said}"):
+        rf.solve(scene)

@@ -1,4 +1,4 @@
-"""Pressures that end at the hardness: the option, when the cap enters, its numbers and their error bars."""
+"""Pressures capped at the hardness: the option, when the cap enters, its numbers and their error bars."""
 
 from __future__ import annotations
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -105,6 +106,7 @@ def test_a_file_needs_a_measured_surface() -> None:
         ("load,mu,u_mu\n1,0.3,0.1\n9e3,0.3,0.1\n3,0.3,0.1\n", "row 2 (9000 N)"),
         ("load,mu,u_mu\n0.3,2,0.1\n0.1,0.3,0.01\n", "mu rises"),
         ("load,mu,u_mu\n1,2,0.1\n3,0.05,0.01\n2,0.1,0.01\n", "friction falls"),
+        ("load,mu,u_mu\n0.147,1,0.1\n0.142,16,0.1\n0.141,40,0.1\n", "friction falls"),
         ("load,mu,u_mu\n1,139,0.1\n9,129,0.1\n20,5,0.1\n", "per cent?"),
         ("load,mu,u_mu\n1,0.3,1\n2,0.0059,1\n", "data: mu = '0.0059 to 0.3'"),
         ("load,mu,u_mu\n5,0.1,1\n\uff19,0.1,1\n", "line 3: load = '\uff19': expected a finite number"),
@@ -153,3 +155,37 @@ def test_the_widest_tables_and_the_least_rows() -> None:
     """Neighbouring loads 300 apart and mu 50 apart; a direction makes another case."""
     check_rows([Row(1.0, 0.01, 0.1), Row(300.0, 0.5, 0.1), Row(90e3, 0.0, 0.1)], 3)
     check_rows([Row(1.0, 0.3, 0.1), Row(1.0, 0.3, 0.1, sliding_direction=1.0)])
+
+
+COLUMNS = {
+    "load": [5, 80.5], "mu": [0.2, 0.15], "u_mu": [0.02, 1e-2], "sliding_offset": [float("nan"), 1e-6],
+    "lower_file": [None, "b.npy"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("frame", ["dict", "pandas"])
+def test_a_data_frame_has_the_rows_of_its_file(tmp_path: Path, frame: str) -> None:
+    table = COLUMNS if frame == "dict" else pytest.importorskip("pandas").DataFrame(COLUMNS)
+    text = f"load,mu,u_mu,sliding_offset,lower_file\n5,0.2,0.02,,\n80.5,0.15,0.01,1e-6,{tmp_path}/b.npy\n"
+    expected = read_rows(_written(tmp_path, text))
+    assert read_rows(table) == (expected[0], replace(expected[1], lower_file="b.npy"))
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        (COLUMNS | {"load": [5, "80 N"]}, "data row 2: load = '80 N': expected a finite number in N"),
+        (COLUMNS | {"load": [None, 80]}, "data row 1: load = '': expected a finite number in N"),
+        (COLUMNS | {"force": [1, 2]}, "data column = 'force': expected columns load,mu,u_mu or"),
+        ([5, 80], "data = 'list': expected a CSV file's path, or a data frame"),
+        (3.0, "data = 'float': expected a CSV file's path, or a data frame"),
+    ],
+)
+def test_what_a_data_frame_lacks_is_named_by_its_row(table: object, said: str) -> None:
+    with pytest.raises(InputError, match=f"^{re.escape(said)}"):
+        read_rows(table)
+
+
+def test_an_identification_takes_rows_alone() -> None:
+    with pytest.raises(InputError, match=r"'dict': expected at most 1000 rows as of read_rows"):
+        check_rows(COLUMNS)  # type: ignore[arg-type]  # a table, in place of its rows

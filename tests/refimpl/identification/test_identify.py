@@ -167,6 +167,7 @@ def _yielding(smooth: rf.Scene, hardness: float) -> rf.Scene:
     )
 
 
+@pytest.mark.nightly
 def test_the_hardness_is_given_back_from_a_wrong_guess(smooth: rf.Scene) -> None:
     """p_max of the elastic contact is 0.17 GPa at 70 N: 0.1 GPa yields at the larger loads alone."""
     rows = _rows(_yielding(smooth, 100e6), 0.002, (2.0, 5.0, 10.0, 20.0, 40.0, 80.0), 64)
@@ -407,6 +408,7 @@ def test_an_end_judged_by_its_own_scatter() -> None:
         assert profile.interval(np.array([1.0, 0.0])) == pytest.approx((low, high), rel=1e-4)
 
 
+@pytest.mark.nightly
 def test_statistics_of_a_surface_cover_a_realisation_that_no_fit_draws() -> None:
     """Noise of 0.1 % would miss by tens of standard uncertainties: the scatter of realisations covers it."""
     scene = read_scene("table1-rough")

@@ -114,6 +114,11 @@ SAID: list[tuple[dict[str, Any], str]] = [
     ({"responses": [{"numerical": 1, "contact_edge": 1}, {"contact_edge": 1}]}, "uncertainty in 2 rows"),
     ({"responses": [{}, {"border": 0.021}]}, "contact reaches the domain's border"),
     ({"responses": [{"plastic": 0.25}, {}]}, "up to 25 % of the contact is at the hardness"),
+    (
+        {"responses": [{"plastic": 0.56}, {"warnings": ("plasticity index 1.2 of Eq. (12) reaches 1",)}]},
+        "up to 56 % of the contact is at the hardness",
+    ),
+    ({"responses": [{"warnings": ("plasticity index 1.2",)}, {}]}, "plasticity index 1.2"),
     ({"responses": [{"warnings": ("1.5 deg",)}, {"warnings": ("2 deg",)}]}, "2 deg"),
     (laws(10.2), "the law Coulomb describes the data better (AICc lower by 6.2)"),
     (laws(10.0) | tau(10, 8, 12) | {"probability": 0.01, "fit": {"nonlinearity": 0.5}} | EDGE, ""),

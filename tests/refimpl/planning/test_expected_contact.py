@@ -74,17 +74,19 @@ def by_all_heights(problem: Problem) -> ExpectedContact:
     order, carried = carried_in_order(problem)
     if problem.load is not None:
         count = min(int(np.searchsorted(carried, problem.load)) + 1, order.size)
-        mean_pressure = problem.load / (count * grid.element_area)
     else:
         count = max(1, np.count_nonzero(gap < (problem.approach or 0.0)) // 2)
-        mean_pressure = carried[count - 1] / (count * grid.element_area)
-    contact = np.zeros(gap.shape, dtype=bool)
-    contact.ravel()[order[:count]] = True
+    contact = gap <= gap.ravel()[order[count - 1]] + 1e-9 * np.ptp(gap)
+    count = np.count_nonzero(contact)
+    carries = problem.load if problem.load is not None else carried[count - 1]
+    mean_pressure = carries / (count * grid.element_area)
     approach = problem.approach or 2 * gap[contact].max()
     stiff = [body.E / (1 - body.nu**2) for body in (problem.pair.lower, problem.pair.upper)]
     upper_share = stiff[0] / sum(stiff)
     bodies = [gradient(problem, problem.mean_surface + sign * gap / 2) for sign in (-1, 1)]
-    common = [upper_share * lower + (1 - upper_share) * upper for lower, upper in zip(*bodies, strict=True)]
+    beside = gradient(problem, np.maximum(gap - gap[contact].max(), 0) * (upper_share - 0.5))
+    parts = zip(*bodies, beside, strict=True)
+    common = [upper_share * low + (1 - upper_share) * up + edge for low, up, edge in parts]
     along = [tangent[contact] for tangent, _ in bodies]
     sizes = patch_sizes(contact, periodic=grid.periodic).astype(float)
     border = contact.copy()
@@ -135,15 +137,15 @@ def test_the_fewest_of_the_lowest_elements_that_carry_the_load_touch(grid: Grid,
 @pytest.mark.parametrize("grid", GRIDS, ids=str)
 def test_at_an_approach_half_of_the_elements_that_interfere_touch(grid: Grid, approach: float) -> None:
     problem = posed(grid, load=None, approach=approach)
-    found = assert_described(problem)
-    assert found.elements == max(1, np.count_nonzero(problem.gap < approach) // 2)
+    found, half = assert_described(problem), max(1, np.count_nonzero(problem.gap < approach) // 2)
+    assert half <= found.elements <= half + 7  # of a symmetric ball eight touch at once
 
 
 @pytest.mark.parametrize("approach", [0.0, -1e-6])
 def test_an_approach_that_hardly_loads_anything_has_a_least_pressure(approach: float) -> None:
     problem = posed(BALL.grid(8), np.zeros((8, 8)), load=None, approach=approach)
     found = expected_contact(problem)
-    assert found.elements == 1
+    assert found.elements == 64  # flat surfaces touch as a whole
     assert found.mean_pressure == pytest.approx(1e-12 * problem.pair.reduced_modulus)
 
 

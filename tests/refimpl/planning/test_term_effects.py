@@ -69,13 +69,14 @@ def test_on_a_finer_grid_as_many_times_more_elements_touch() -> None:
     problem = discretise(SCENE, SCENE.grid(6))
     pressure = np.zeros((6, 6))
     pressure[2, 2:4] = 2e6
-    contact = solved_contact(problem, pressure, CONTACT)
+    clearance = np.zeros_like(pressure)
+    contact = solved_contact(problem, pressure, clearance, CONTACT)
     for elements, expected in ((900, 50), (18, 2), (None, 2)):
-        found = effects_in(("oblique",), problem, pressure, CONTACT, elements)
+        found = effects_in(("oblique",), problem, pressure, clearance, CONTACT, elements)
         scales = Scales(replace(contact, elements=expected), problem.pair, problem.friction)
         assert found == {"oblique": effects_of("oblique", scales)}
-    assert effects_in((), problem, pressure, CONTACT) == {}
-    assert effects_in(("oblique",), problem, 0 * pressure, CONTACT) == {}
+    assert effects_in((), problem, pressure, clearance, CONTACT) == {}
+    assert effects_in(("oblique",), problem, 0 * pressure, clearance, CONTACT) == {}
 
 
 @pytest.mark.parametrize(("mean", "included"), [(29e6, False), (31e6, True)])

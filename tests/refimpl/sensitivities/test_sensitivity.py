@@ -180,6 +180,7 @@ def test_parameters_are_read_and_changed_by_name() -> None:
         with_parameter(scene, "load", -1.0)
 
 
+@pytest.mark.nightly
 def test_a_derivative_that_two_ways_disagree_on_says_so() -> None:
     """A surface that is stretched meets elsewhere: on few elements the sign of its answer is not known."""
     scene = rf.Scene(
@@ -461,6 +462,7 @@ def test_peak_pressure_follows_roughness(surface: rf.Surface, names: tuple[str, 
         assert abs(found.derivatives["max_pressure"][name] - expected) <= 1e-3 * scale, name
 
 
+@pytest.mark.nightly
 def test_hurst_exponents_stay_below_one() -> None:
     here = scene(FRACTAL.with_parameter("hurst", 1.0))
     found = sensitivity(here, rf.solve(here, M))

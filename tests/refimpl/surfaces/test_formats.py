@@ -6,7 +6,6 @@ import logging
 import re
 import warnings
 import zipfile
-from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -159,16 +158,15 @@ def test_units_have_names_in_ascii(tmp_path: Path, unit: str, name: str, size: f
     assert (reading.unit, reading.heights[0, 0]) == (name, size)
 
 
-def x3p_of(path: Path, folder: str = "", revision: str | None = None, backslash: bool = False) -> Path:
-    """An X3P file as other writers pack it."""
+def x3p_of(path: Path, *changes: tuple[str, str], folder: str = "") -> Path:
+    """An X3P file as other writers pack it: patterns of main.xml replaced, each found at least once."""
     write.write_x3p(path, MAP)
     with zipfile.ZipFile(path) as archive:
         members = {name: archive.read(name) for name in archive.namelist()}
     main = members["main.xml"].decode()
-    if revision is not None:
-        main = main.replace("ISO5436 - 2000", revision)
-    if backslash:
-        main = main.replace("bindata/", "bindata\\")
+    for old, new in changes:
+        main, count = re.subn(old, new, main)
+        assert count
     members["main.xml"] = main.encode()
     with zipfile.ZipFile(path, "w") as archive:
         for name, content in members.items():
@@ -176,39 +174,41 @@ def x3p_of(path: Path, folder: str = "", revision: str | None = None, backslash:
     return path
 
 
-@pytest.mark.parametrize(
-    ("folder", "revision", "backslash", "notes"),
-    [
-        ("", None, False, ()),
-        ("scan 7/", None, False, ("X3P with folder 'scan 7/' in the archive",)),
-        ("", "ISO 25178-72:2017", False, ("X3P with revision 'ISO 25178-72:2017'",)),
-        ("a/b/", "ISO5436-2", True, ("X3P with revision 'ISO5436-2', folder 'a/b/' in the archive",)),
-    ],
-)
+REVISED = ("ISO5436 - 2000", "ISO 25178-72:2017")
+X3P = [
+    ("", [], ()),
+    ("scan 7/", [], ("X3P with folder 'scan 7/' in the archive",)),
+    ("", [REVISED], ("X3P with revision 'ISO 25178-72:2017'",)),
+    ("a/b/", [("ISO5436 - 2000", "ISO5436-2"), ("bindata/", r"bindata\\")],
+     ("X3P with revision 'ISO5436-2', folder 'a/b/' in the archive",)),
+    ("", [("</CZ>", "<Offset/></CZ>")], ()),  # x3ptools, fix3p
+    ("", [("<Date>[^<]*", "<Date>N/A")], ()),
+    ("", [("xmlns:p=", 'xmlns="of all" xmlns:p=')], ()),
+    ("", [("<MD5ChecksumPointData>[^<]*", "<MD5ChecksumPointData>unknown")], ()),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("folder", "changes", "notes"), X3P)
 def test_x3p_of_other_writers(
-    tmp_path: Path, folder: str, revision: str | None, backslash: bool, notes: tuple[str, ...]
+    tmp_path: Path, folder: str, changes: list[tuple[str, str]], notes: tuple[str, ...]
 ) -> None:
-    reading = read(x3p_of(tmp_path / "map.x3p", folder, revision, backslash))
+    reading = read(x3p_of(tmp_path / "map.x3p", *changes, folder=folder))
     same(reading.heights)
     assert reading.notes == notes
 
 
-def test_x3p_whose_data_are_not_those_of_its_checksum(tmp_path: Path) -> None:
-    stated = r"<MD5ChecksumPointData>[^<]*"
-    for checksum, refused in (
-        ("0" * 32, True),
-        ("unknown", False),
-    ):  # no checksum
-        path = x3p_of(tmp_path / "map.x3p")
-        with zipfile.ZipFile(path) as archive:
-            members = {name: archive.read(name) for name in archive.namelist()}
-        main, count = re.subn(stated, f"<MD5ChecksumPointData>{checksum}", members["main.xml"].decode())
-        assert count == 1
-        with zipfile.ZipFile(path, "w") as archive:
-            for name, content in (members | {"main.xml": main.encode()}).items():
-                archive.writestr(name, content)
-        with pytest.raises(InputError, match="checksum") if refused else nullcontext():
-            same(read(path).heights)
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("<MD5ChecksumPointData>[^<]*", "<MD5ChecksumPointData>" + 32 * "0", "checksum that main.xml states"),
+        ("<FeatureType>SUR", "<FeatureType>PRF", "regular grid .*FeatureType is 'PRF'"),
+        ("(<CY>.*?)<AxisType>I", r"\1<AxisType>A", "regular grid .*CY/AxisType is 'A'"),
+        ("<SizeZ>1", "<SizeZ>3", "regular grid .*SizeZ is '3'"),
+    ],
+)
+def test_x3p_of_no_map_and_of_changed_data_are_refused(tmp_path: Path, old: str, new: str, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        read(x3p_of(tmp_path / "map.x3p", ("(?s)" + old, new)))
 
 
 @pytest.mark.parametrize("damage", ["cut", "lengths", "count"])

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy
 
 import refimpl as rf
 from refimpl.measured.areal_parameters import (
@@ -180,6 +181,17 @@ def test_a_lay_of_grooves_and_of_the_transposed_map(tmp_path: Path, degrees: int
     np.save(tmp_path / "a.npy", gaussian(seed=4))
     isotropic = rf.inspect_surface(tmp_path / "a.npy", unit="m", pixel_size=PIXEL)
     assert math.isnan(isotropic.parameters["lay_deg"])
+
+
+def test_holes_are_filled_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Once for all rows and notes; `fill_error` fills others."""
+    z = np.random.default_rng(2).normal(size=(60, 50))
+    z[5:7, 9] = z[40, 30] = np.nan
+    np.save(tmp_path / "a.npy", z)
+    solved, solve = [], scipy.sparse.linalg.spsolve
+    monkeypatch.setattr(scipy.sparse.linalg, "spsolve", lambda *a: solved.append(1) or solve(*a))
+    rf.inspect_surface(tmp_path / "a.npy", unit="um", pixel_size=1e-6).document()
+    assert len(solved) == 2
 
 
 @pytest.mark.parametrize("holes", ["none", "few", "scattered", "one"])

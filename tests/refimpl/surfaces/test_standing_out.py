@@ -9,7 +9,8 @@ import pytest
 
 import refimpl as rf
 from refimpl.measured.missing_points import fill
-from refimpl.measured.standing_out import scars, spikes
+from refimpl.measured.preparation import outlying
+from refimpl.measured.standing_out import FAR, scars
 from tests import plate
 
 POINTS = (160, 120)
@@ -24,8 +25,10 @@ def test_spikes_and_scars_are_counted(short_cut: float) -> None:
     scarred = plate.sampled(surface, plate.Dirt(spikes=0, holes=0, scars=7), POINTS)
     known = np.isfinite(spiked)
     spiked = fill(spiked, PIXEL)
-    assert (spikes(clean, np.isfinite(clean)), scars(clean), scars(clean.T)) == (0, 0, 0)
-    assert 17 <= spikes(spiked, known) <= 20  # where two are neighbours, or one beside a hole, one may hide
+    assert not outlying(clean, np.isfinite(clean), FAR)[0].any()
+    assert (scars(clean), scars(clean.T)) == (0, 0)
+    found = np.count_nonzero(outlying(spiked, known, FAR)[0])
+    assert 17 <= found <= 20  # where two are neighbours, or one beside a hole, one may hide
     assert 5 <= scars(scarred.T) <= 7  # of two neighbouring lines neither stands out from both sides
     assert scars(scarred) == 0
 

@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.measured.readers import read
+from refimpl.measured.reading import IMAGE
 from refimpl.measured.text_lines import NOT_MEASURED
 from refimpl.measured.text_tables import read_table
 from tests.refimpl.surfaces import instrument_writers as write
@@ -65,7 +66,7 @@ def test_a_missing_row_of_points_is_missing_points(tmp_path: Path) -> None:
 def test_points_off_a_grid_are_refused_with_a_number(tmp_path: Path) -> None:
     points = np.random.default_rng(3).random((200, 3))
     np.savetxt(tmp_path / "map.xyz", points)
-    with pytest.raises(InputError, match="points on a regular grid"):
+    with pytest.raises(InputError, match="x, y, z on a regular grid"):
         read(tmp_path / "map.xyz", unit="um")
     grid = np.array([(x, y, 1.0) for x in range(5) for y in range(5)])
     grid[7, 0] += 0.3
@@ -75,18 +76,6 @@ def test_points_off_a_grid_are_refused_with_a_number(tmp_path: Path) -> None:
     np.savetxt(tmp_path / "map.xyz", np.vstack([grid, grid])[:, :3] * [0, 1, 1])
     with pytest.raises(InputError, match="a line scan: all points have one x"):
         read(tmp_path / "map.xyz", unit="um")
-
-
-@pytest.mark.parametrize(
-    ("separator", "comma"), [(";", True), ("\t", True), (" ", True), (";", False), (",", False)]
-)
-def test_separators_and_decimal_commas(tmp_path: Path, separator: str, comma: bool) -> None:
-    z = np.where(np.isnan(MAP), 0.0, MAP)
-    rows = [separator.join(f"{v * 1e6:.5f}" for v in row) for row in z]
-    text = "\n".join(row.replace(".", ",") if comma else row for row in rows)
-    (tmp_path / "map.csv").write_text(text + "\n")
-    reading = read(tmp_path / "map.csv", unit="um", pixel_size=PIXEL)
-    np.testing.assert_allclose(reading.heights, z, rtol=0, atol=1e-20)
 
 
 @pytest.mark.parametrize("columns", [600, 3])
@@ -114,11 +103,6 @@ def test_a_refusal_says_what_was_found(tmp_path: Path, content: str, said: str) 
     (tmp_path / "a.csv").write_text(content)
     with pytest.raises(InputError, match=said):
         read(tmp_path / "a.csv", unit="um", pixel_size=PIXEL)
-
-
-def test_fortrans_exponents_and_rows_counted_from_one(tmp_path: Path) -> None:
-    (tmp_path / "a.txt").write_text("\n".join(f"{k}\t{k}.5D-1\t2.5d0\t3.5\t4.5" for k in (1, 2, 3, 4)))
-    assert read(tmp_path / "a.txt", "m", PIXEL).heights[1].tolist() == [0.25, 2.5, 3.5, 4.5]
 
 
 def test_blank_lines_between_blocks_of_points_are_no_end(tmp_path: Path) -> None:
@@ -324,7 +308,8 @@ def test_marks_that_may_be_of_thousands_are_judged_by_all_rows(
 
 
 @pytest.mark.parametrize(
-    ("mark", "size", "noted"), [(-9999, 1, True), (-999, 300, True), (-1e6, 1, True), (-4, 1, False)]
+    ("mark", "size", "noted"),
+    [(-9999, 1, True), (-999, 300, True), (-1e6, 1, True), (-4, 1, False), (-4, 0, False), (-9999, 0, True)],
 )
 def test_points_far_outside_all_others_get_a_note(
     tmp_path: Path, mark: float, size: float, noted: bool
@@ -337,3 +322,42 @@ def test_points_far_outside_all_others_get_a_note(
     assert len(told) == noted
     assert all(note.startswith(f"10 points are at {mark:.6g} um") for note in told)
     assert all(note.endswith("write nan there") for note in told)
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "# Kanal: z\n# Breite: {0},0 µm\n# Höhe: {1},0 µm\n# Werteeinheit: nm\n",
+        "Breite;{0},00;um\nHöhe;{1},00;um\nZ-Einheit;nm\n",
+        "Breite [µm]: {0},0\nHoehe [µm]: {1},0\nWerteinheit: nm\n",
+        "# Canal : z\n# Largeur : {0},0 µm\n# Hauteur : {1},0 µm\n# Unités des valeurs : nm\n",
+        "Largeur\t{0},0\tµm\nHauteur\t{1},0\tµm\nUnité de valeur\tnm\n",
+        "# Anchura: {0},0 µm\n# Altura: {1},0 µm\n# Unidades de valor: nm\n",
+        "ANCHO = {0},0 um\nALTO = {1},0 um\nUnidad de los valores = nm\n",
+        "Width (um): {0}.0\nHeight (um): {1}.0\nValue unit: nm\n",
+    ],
+)
+def test_headers_in_german_french_and_spanish_are_read_as_english_ones(tmp_path: Path, head: str) -> None:
+    edges = round(1e6 * NX * PIXEL[0]), round(1e6 * NY * PIXEL[1])
+    z = np.where(np.isnan(MAP), 0.0, MAP)
+    rows = [";".join(f"{1e9 * v:.2f}" for v in line) for line in z.T[::-1]]
+    text = head.format(*edges) + "\n".join(rows).replace(".", ",")
+    (tmp_path / "map.txt").write_text(text)
+    found = read(tmp_path / "map.txt")
+    np.testing.assert_allclose(found.heights, z, rtol=0, atol=1e-20)
+    np.testing.assert_allclose(found.pixel, PIXEL, rtol=1e-12)
+    assert (found.unit, found.orientation) == ("nm", IMAGE)
+
+
+@pytest.mark.parametrize("width", ["1,024", "1.024,5", "1,024.5"])
+def test_edges_that_may_have_thousands_are_refused(tmp_path: Path, width: str) -> None:
+    head = f"Width: {width} um\nHeight: 12,5 um\nValue units: um\n"
+    (tmp_path / "a.txt").write_text(head + "1.5 2.5 0.5 3.5\n" * 5)
+    with pytest.raises(InputError, match="unit, pixel_size"):
+        read(tmp_path / "a.txt")
+
+
+def test_an_image_of_three_columns_is_no_table_of_points(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("# Breite: 3,0 um\n# Höhe: 4,0 um\n" + "1 2 3\n" * 4)
+    with pytest.raises(InputError, match="at least 4 an axis"):
+        read(tmp_path / "a.txt", unit="um")

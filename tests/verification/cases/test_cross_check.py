@@ -45,6 +45,7 @@ def test_nested_grids_and_windows_agree_too(name: str, monkeypatch: pytest.Monke
     agree(scene_trial, fft)
 
 
+@pytest.mark.nightly
 def test_the_scenes_stress_what_they_say() -> None:
     assert len(TRIALS) >= 14
     assert {trial.M for trial in TRIALS.values()} >= {16, 48}

@@ -34,6 +34,7 @@ def small_table(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     variational.table2.cache_clear()
 
 
+@pytest.mark.nightly
 @pytest.mark.usefixtures("small_table")
 def test_methods_with_the_matrix_stop_early_and_the_table_is_recorded() -> None:
     found = variational.table2_growth()

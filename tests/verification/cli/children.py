@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import gc
 import os
+import sqlite3
 import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
+from contextlib import closing, suppress
 from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import NamedTuple
@@ -85,3 +87,12 @@ def one_line(ended: Ended, says: str, status: int = 1) -> None:
 
 def small(realisations: int = 40) -> Study:
     return study_from_dict({"scene": "table1-rough", "realisations": realisations, "vary": {"grid": [12]}})
+
+
+def finished(store: Path) -> int:
+    """Return the number of finished runs of a store; 0 before it has its table."""
+    if not store.exists():
+        return 0
+    with closing(sqlite3.connect(store)) as connection, suppress(sqlite3.OperationalError):
+        return int(connection.execute("select count(*) from runs").fetchone()[0])
+    return 0

@@ -115,7 +115,11 @@ def test_an_interrupted_map_ends_at_once_with_its_workers(tmp_path: Path) -> Non
 
 
 def full_disk() -> None:
-    """No file may grow beyond 500 bytes; the signal for it is ignored, so that the write says EFBIG."""
+    """No file may grow beyond 500 bytes; the signal for it is ignored, so that the write says EFBIG.
+
+    Bytecode of a module imported here would be cut off at 500 bytes too, and stay for all later runs.
+    """
+    sys.dont_write_bytecode = True
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500))
 

@@ -189,7 +189,7 @@ MAGIC = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 @pytest.mark.parametrize(
     ("command", "suffix"),
     [
-        *(("solve metal-polymer --grid 16", suffix) for suffix in MAGIC),
+        ("solve metal-polymer --grid 16", ".png"),
         ("solve hertz --grid 16 --approach 0", ".png"),  # no contact
         ("solve hertz --grid 16 --size 4e-3x2e-4", ".png"),  # slender
         ("appendix-a surface hertz --grid 16", ".svg"),

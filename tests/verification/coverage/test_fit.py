@@ -11,7 +11,7 @@ import pytest
 import refimpl as rf
 from tests.refimpl.accuracy.made_up import made_up
 from verification.coverage import fit
-from verification.coverage.building import Solved, as_corrected, exact_numbers, pack, unpacked
+from verification.coverage.building import Solved, as_corrected, exact_numbers, merged, pack, unpacked
 from verification.coverage.class_scenes import CLASSES, scene
 from verification.coverage.likelihood import fit as likeliest
 
@@ -43,6 +43,19 @@ def test_stored_features_give_the_same_excess_and_bars(tmp_path: Path) -> None:
     for stored, grid in zip(found.grids, grids[1::2], strict=True):
         assert stored.excess == pytest.approx(grid.excess, rel=1e-4)
         assert stored.numbers["contact_area"] == pytest.approx(grid.numbers["contact_area"], rel=1e-5)
+
+
+def test_scenes_of_a_new_class_are_added_to_the_stored_ones(tmp_path: Path) -> None:
+    grids = tuple(as_corrected(made_up(M)) for M in (48, 64, 96, 128, 512))
+    stored = [Solved("pads", seed, grids, {}) for seed in (1, 2)]
+    pack(stored, tmp_path / "f.json.gz")
+    again = Solved("pads", 2, grids, {"contact_area": 1.0})
+    new = [again, Solved("new", 1, grids, {})]
+    pack(merged(unpacked(tmp_path / "f.json.gz"), new), tmp_path / "f.json.gz")
+    found = unpacked(tmp_path / "f.json.gz")
+    assert [(one.kind, one.seed) for one in found] == [("pads", 1), ("pads", 2), ("new", 1)]
+    assert [len(one.grids) for one in found] == [3, 3, 3]
+    assert found[1].exact == {"contact_area": 1.0}
 
 
 def test_every_class_is_in_the_committed_constants_and_features() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -10,23 +11,33 @@ import pytest
 
 from refimpl.grid import Array
 from verification.solver_suite import own
-from verification.solver_suite.covering import covering
+from verification.solver_suite.covering import FILE, stored, text
 from verification.solver_suite.design import further_rows, in_turn, posed, rows, shape_of
 from verification.solver_suite.dimensions import CHANGED, DESIGNS, FURTHER
 from verification.solver_suite.isolated import Limited
 from verification.solver_suite.protocol import ContactProblem
 from verification.solver_suite.suite import run, select, suite, thorough
 
+SEARCHED = ("large", "capped")
+"""Designs whose search takes a second at most."""
 
-@pytest.mark.parametrize("name", DESIGNS)
+
+@pytest.mark.parametrize("name", DESIGNS | FURTHER)
 def test_every_combination_of_levels_occurs(name: str) -> None:
     """All pairs, of ``triples`` all triples; but no flat periodic gap at an approach."""
-    dimensions, strength = DESIGNS[name].dimensions, 3 if name == "triples" else 2
-    made = covering(dimensions, DESIGNS[name].seed, strength=strength, tries=DESIGNS[name].tries)
-    assert len(made) == len(rows()[name])
-    for chosen in itertools.combinations(dimensions, strength):
+    design = (DESIGNS | FURTHER)[name]
+    made = stored(name, design)
+    assert len(made) == len((rows() | further_rows())[name])
+    for chosen in itertools.combinations(design.dimensions, design.strength):
         found = {tuple(row[each] for each in chosen) for row in made}
-        assert found == set(itertools.product(*(dimensions[each] for each in chosen)))
+        assert found == set(itertools.product(*(design.dimensions[each] for each in chosen)))
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[] if n in SEARCHED else [pytest.mark.nightly]) for n in DESIGNS | FURTHER]
+)
+def test_the_stored_rows_are_those_that_the_search_finds(name: str) -> None:
+    assert text(name) == json.loads(FILE.read_text(encoding="utf-8"))[name]
 
 
 def test_problems_in_turn_differ_in_one_dimension() -> None:

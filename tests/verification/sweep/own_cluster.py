@@ -1,4 +1,4 @@
-"""A dask.distributed cluster of processes of our own, whose members can be killed one by one."""
+"""A dask.distributed cluster of processes of our own, whose scheduler can be killed."""
 
 from __future__ import annotations
 
@@ -9,28 +9,25 @@ import sys
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 START_SECONDS = 60.0
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
-@dataclass
-class Cluster:
-    """The scheduler's address, its process, and the workers' (without nannies, so that a kill is final)."""
+class Cluster(NamedTuple):
+    """The scheduler's address and its process."""
 
     address: str
     scheduler: subprocess.Popen[bytes]
-    workers: list[subprocess.Popen[bytes]]
 
 
 @contextmanager
 def cluster(
-    folder: Path, workers: int, environment: Mapping[str, str] = ONE_THREAD, *, drop: tuple[str, ...] = ()
+    folder: Path, environment: Mapping[str, str] = ONE_THREAD, *, drop: tuple[str, ...] = ()
 ) -> Iterator[Cluster]:
-    """A cluster of workers of one thread; ``environment`` is added to this process's, without ``drop``."""
+    """A cluster of one worker of one thread; ``environment`` is added to this process's, without ``drop``."""
     import distributed
 
     every = {name: value for name, value in os.environ.items() if name not in drop} | dict(environment)
@@ -41,18 +38,17 @@ def cluster(
         return subprocess.Popen(command, env=every, cwd=folder, **quiet)  # type: ignore[call-overload]  # flags
 
     file = folder / "scheduler.json"
-    scheduler = start("dask_scheduler", "--port", "0", "--host", "127.0.0.1", "--scheduler-file", str(file))
-    made = Cluster("", scheduler, [])
+    made = [start("dask_scheduler", "--port", "0", "--host", "127.0.0.1", "--scheduler-file", str(file))]
     try:
-        made.address = _address(file, scheduler)
+        address = _address(file, made[0])
         alone = ("--no-nanny", "--nthreads", "1", "--local-directory", str(folder))
-        made.workers = [start("dask_worker", made.address, *alone) for _ in range(workers)]
+        made.append(start("dask_worker", address, *alone))
         connect: Any = distributed.Client  # untyped
-        with connect(made.address, timeout=START_SECONDS) as client:
-            client.wait_for_workers(workers, timeout=START_SECONDS)
-        yield made
+        with connect(address, timeout=START_SECONDS) as client:
+            client.wait_for_workers(1, timeout=START_SECONDS)
+        yield Cluster(address, made[0])
     finally:
-        for process in (*made.workers, scheduler):
+        for process in made:
             process.kill()
             process.wait()
 

@@ -78,3 +78,11 @@ def test_where_no_file_can_be_used_the_first_ones_reason_is_told(study: Path) ->
     study.write_text(text[: text.index('["map0')] + '["lost.txt"]\n')
     with pytest.raises(InputError, match=r"lost\.txt"):
         read_study(study, keep_going=True)
+
+
+def test_a_note_names_the_map_that_limits_the_domain_of_all(study: Path) -> None:
+    z = plate.sampled(plate.worn(seed=9, rms=0.05e-6), plate.CLEAN, (20, 15))
+    plate.write(z, study.parent / "map5.txt")
+    notes = read_study(study, keep_going=True).notes
+    assert notes[0].startswith("no size given: 3.2e-05 x 2.4e-05 m")
+    assert notes[0].endswith("by map5.txt; the largest scene has 6.4e-05 x 4.8e-05 m")

@@ -96,7 +96,6 @@ REFUSED: list[tuple[str, dict[str, Any]]] = [
     ("first_seed", {"first_seed": 2**63 - 2}),
     ("normalise", {"normalise": 1}),
     ("vary", {"vary": [1]}),
-    ("vary.grid", {"vary": {}}),
     ("vary.grid", {"vary": {"grid": [16.5]}}),
     ("vary.grid", {"vary": {"grid": [16, 16]}}),
     ("vary.grid", {"vary": {"grid": True}}),

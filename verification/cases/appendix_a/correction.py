@@ -36,7 +36,7 @@ ROUNDS = 40
 
 
 def scene_of(pair: str, slope_deg: float, realisation: int) -> rf.Scene:
-    """Table 1's scene, its roughness scaled to an rms slope.
+    """Return Table 1's scene, its roughness scaled to an rms slope.
 
     In contact the common surface is the stiffer body's. The second pair has all roughness on a rigid ball,
     so that slopes stay steep, and one elastic body, so that the first order has no other to cancel it.
@@ -69,7 +69,8 @@ def near_field(found: rf.Solution, material: rf.Material, sign: float, reach: in
 
 
 def remedied(scene: rf.Scene, size: int, reach: int = 1) -> rf.Solution:
-    """The scene (sliding along x) with near-field coefficients computed on the slopes, `reach` elements far.
+    """Return the scene (sliding along x) with near-field coefficients computed on the slopes, `reach`
+    elements far.
 
     Raises RuntimeError if that does not settle.
     """
@@ -91,7 +92,7 @@ def remedied(scene: rf.Scene, size: int, reach: int = 1) -> rf.Solution:
 
 
 def numbers(found: rf.Solution) -> Array:
-    """mu, A (m^2), f_max (Pa) and Q (N) of a solution that ended well."""
+    """Return mu, A (m^2), f_max (Pa) and Q (N) of a solution that ended well."""
     if found.status not in (rf.Status.CONVERGED, rf.Status.CYCLED):
         raise RuntimeError(f"the solver ended {found.status.value}")
     names = ("friction_coefficient", "contact_area", "max_pressure", "binormal_force")
@@ -99,7 +100,8 @@ def numbers(found: rf.Solution) -> Array:
 
 
 def change(found: rf.Solution, plain: rf.Solution) -> Array:
-    """Percent by which mu, A and f_max changed; that of Q, which may be nil, is of the friction force."""
+    """Return percent by which mu, A and f_max changed; that of Q, which may be nil, is of the friction
+    force."""
     base = numbers(plain)
     scale = np.array([*base[:3], plain.friction_force])
     percent: Array = 100 * (numbers(found) - base) / scale
@@ -108,7 +110,7 @@ def change(found: rf.Solution, plain: rf.Solution) -> Array:
 
 @cache
 def changes(pair: str, slope_deg: float) -> dict[str, Array]:
-    """Per treatment the changes [realisation, quantity]."""
+    """Return the changes [realisation, quantity] per treatment."""
     found: dict[str, list[Array]] = {name: [] for name in TREATMENTS}
     for seed in SEEDS:
         scene = scene_of(pair, slope_deg, seed)
@@ -119,7 +121,7 @@ def changes(pair: str, slope_deg: float) -> dict[str, Array]:
 
 
 def over_slopes(pair: str) -> dict[str, object]:
-    """Means over realisations with 95 % intervals, over SLOPES."""
+    """Return the means over realisations with 95 % intervals, over SLOPES."""
     data: dict[str, object] = {"rms slope (degrees)": list(SLOPES)}
     for treatment in TREATMENTS:
         for k, quantity in enumerate(QUANTITIES):
@@ -130,7 +132,8 @@ def over_slopes(pair: str) -> dict[str, object]:
 
 
 def restored(pair: str, quantity: str) -> float:
-    """Share of the correction's changes that the remedy makes, fitted over realisations and slopes."""
+    """Return the share of the correction's changes that the remedy makes, fitted over realisations and
+    slopes."""
     k = QUANTITIES.index(quantity)
     cured, near = (
         np.concatenate([changes(pair, slope)[name][:, k] for slope in SLOPES]) for name in TREATMENTS
@@ -139,7 +142,7 @@ def restored(pair: str, quantity: str) -> float:
 
 
 def verdict(pair: str) -> str:
-    """In words: what the correction changes, at the paper's slopes and at the steepest."""
+    """State in words what the correction changes, at the paper's slopes and at the steepest."""
 
     def at(slope: float) -> str:
         mean = changes(pair, slope)[TREATMENTS[0]].mean(axis=0)

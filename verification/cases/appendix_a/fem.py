@@ -26,13 +26,14 @@ POINTS_REASON = "the required error of plane results, a hundredth of the paper's
 
 
 def percent(difference: Array, nu: float, offsets: Array) -> Array:
-    """A displacement difference as a percentage of the flat coefficient at the same offset, with its sign."""
+    """Return a displacement difference as a percentage of the flat coefficient at the same offset, with its
+    sign."""
     return 100.0 * difference / pressed_strip(offsets, nu)
 
 
 @lru_cache
 def flat_run(order: int, level: int, nu: float) -> tuple[float, float]:
-    """Largest relative error of the flat boundary's displacements, mean cell size."""
+    """Return the largest relative error of the flat boundary's displacements, mean cell size."""
     body = body_of(Setup(ENDS, 1024.0, order), level, flat())
     offsets = np.array([-10.0, -4.0, -3.0, -1.0, -0.6, 0.4, 1.0, 2.0, 3.0, 10.0])
     points = np.append(offsets, 0.0)

@@ -27,19 +27,19 @@ SOURCE = "paper Appendix A, 'the maximum error ... is less than 2 %'; own first-
 
 @cache
 def shipped() -> Table3D:
-    """The table that comes with the solver."""
+    """Return the table that comes with the solver."""
     with as_file(files("refimpl") / "data" / "coefficient_error_3d.json") as path:
         return Table3D.read(path)
 
 
 @cache
 def flank(nu: float) -> Coefficients3D:
-    """The middle of a flank of 10 degrees, wavelength 20 a."""
+    """Return the middle of a flank of 10 degrees, wavelength 20 a."""
     return coefficients(SLOPE, WAVELENGTH, FLANK, nu)
 
 
 def flat_error(level: int) -> Array:
-    """Finite element over exact minus one (10,) on one mesh."""
+    """Return finite element over exact minus one (10,) on one mesh."""
     sampled = flat_sample(WAVELENGTH, Kind.RIDGE, NU, NEAR, level).down
     return np.asarray(sampled / normal_coefficient(X, Y, NU) - 1)
 
@@ -107,7 +107,8 @@ def correction() -> Measured:
 
 
 def smallest_drop(nu: float, left: Array) -> Measured:
-    """Smallest quotient of the antisymmetric errors at 1, 2 and 3 elements and of what is left of them."""
+    """Return the smallest quotient of the antisymmetric errors at 1, 2 and 3 elements and of what is left of
+    them."""
     plain = flank(nu).antisymmetric
     data = {"elements away": [1, 2, 3], "without": plain.tolist(), "with": left.tolist()}
     return Measured(value=float(np.abs(plain / left).min()), data=data)
@@ -126,12 +127,13 @@ def correction_and_growth() -> Measured:
 
 
 def ridge(slope: float, position: float = FLANK) -> Waviness:
-    """The ridge of these cases."""
+    """Return the ridge of these cases."""
     return Waviness(slope, WAVELENGTH, position)
 
 
 def odd_part(surface: Waviness, nu: float, level: int = 2) -> Array:
-    """Half the difference (10,) between a slope and its opposite, over flat, without the boundary's 1/R^2."""
+    """Return half the difference (10,) between a slope and its opposite, over flat, without the boundary's
+    1/R^2."""
     opposite = Waviness(-surface.slope_deg, surface.wavelength, surface.position, surface.kind)
     near, far = (
         0.5 * (sample(surface, nu, radius, level).down - sample(opposite, nu, radius, level).down)

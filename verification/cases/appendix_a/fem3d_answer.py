@@ -28,13 +28,14 @@ STEEPEST = 8.42  # degrees: the mean of 75 of them, reproduction/largest-slope-f
 
 
 def errors(place: str, nu: float, slopes: Array, *, pair: bool) -> Array:
-    """(slopes, 10) at a wavelength of 20 a: one body, or Table 1's copper (lower) under steel."""
+    """Return (slopes, 10) at a wavelength of 20 a: one body, or Table 1's copper (lower) under steel."""
     series = Series(WAVELENGTH, PLACES[place], nu)
     return shipped().pair_error(series, slopes, COPPER, STEEL) if pair else shipped().error(series, slopes)
 
 
 def worst(slope: float, nu: float, group: str, *, pair: bool) -> float:
-    """Largest error (percent, without sign) of a group of coefficients over crest, flank and valley."""
+    """Return the largest error (percent, without sign) of a group of coefficients over crest, flank and
+    valley."""
     found = [errors(place, nu, np.array([slope]), pair=pair)[0, GROUPS[group]] for place in PLACES]
     return 100 * float(np.abs(found).max())
 

@@ -24,7 +24,7 @@ TIP = np.array([2.0, 3.0, 6.0, 12.0])  # offsets at which a tip is distinguished
 
 
 def odd(values: Array) -> Array:
-    """Antisymmetric part over symmetric offsets."""
+    """Return the antisymmetric part over symmetric offsets."""
     return (values - values[::-1]) / 2.0
 
 
@@ -53,7 +53,8 @@ def first_order_limit() -> Measured:
 
 @cache
 def one_mesh(slope: float, wavelength: float) -> Array:
-    """Rough minus flat displacement (m,) at NEIGHBOURS on a flank, nu 0.3; known to 0.01 points."""
+    """Return the rough minus flat displacement (m,) at NEIGHBOURS on a flank, nu 0.3; known to 0.01
+    points."""
     reach = 3 * wavelength
     boundary = sinusoid_boundary(slope, wavelength, 0.25, reach)
     return departure(setup_for(wavelength, reach), 1, boundary, NEIGHBOURS).at(0.3)

@@ -20,7 +20,7 @@ from verification.cases.appendix_a.fem import POINTS, POINTS_REASON, percent
 
 
 def shipped_map() -> CoefficientMap:
-    """The table that comes with the solver."""
+    """Return the table that comes with the solver."""
     with as_file(files("refimpl") / "data" / "coefficient_error.json") as path:
         return CoefficientMap.read(path)
 

@@ -39,7 +39,7 @@ class _Material:
     finite: bool
 
     def stress(self, gradient: Array) -> Array:
-        """First Piola-Kirchhoff stress."""
+        """Return the first Piola-Kirchhoff stress."""
         lam, mu = lame(self.nu)
         unit = _unit(gradient)
         if not self.finite:
@@ -50,7 +50,7 @@ class _Material:
         return found
 
     def change(self, gradient: Array, d: Array) -> Array:
-        """Derivative of the stress along ``d``."""
+        """Return the derivative of the stress along ``d``."""
         lam, mu = lame(self.nu)
         if not self.finite:
             return self.stress(d)
@@ -62,7 +62,7 @@ class _Material:
         return found
 
     def uniform(self, mean_pressure: float) -> float:
-        """Shortening per depth of a laterally held column."""
+        """Return the shortening per depth of a laterally held column."""
         lam, mu = lame(self.nu)
         if not self.finite:
             return mean_pressure / (lam + 2 * mu)
@@ -133,8 +133,8 @@ def _wave(amplitude: float) -> _Wave:
 
 
 def pressed(amplitude: float, nu: float, approach: float, *, finite: bool) -> tuple[float, float]:
-    """(load per wavelength, approach of the mean plane) of the wave, its base held, the plane ``approach``
-    below first contact. Raises ArithmeticError where Newton's method does not end."""
+    """Return (load per wavelength, approach of the mean plane) of the wave, its base held, the plane
+    ``approach`` below first contact. Raises ArithmeticError where Newton's method does not end."""
     wave, body = _wave(amplitude), _Material(nu, finite)
 
     @BilinearForm
@@ -171,7 +171,8 @@ def pressed(amplitude: float, nu: float, approach: float, *, finite: bool) -> tu
 
 
 def approaches(slope_deg: float, nu: float, share: float) -> tuple[float, float]:
-    """Relative error of the half-space's approach by first-order theory, and what finite strain adds to it.
+    """Return the relative error of the half-space's approach by first-order theory, and what finite strain
+    adds to it.
 
     At a mean pressure of ``share`` p*: the approaches of the linear and of the neo-Hookean wave count over
     Westergaard's at their own loads, which differ by little, so that the mesh's error cancels.
@@ -190,7 +191,7 @@ def approaches(slope_deg: float, nu: float, share: float) -> tuple[float, float]
 
 
 def _moment(amplitude: float, modulus: float, load: float) -> float:
-    """Mean of height times Westergaard's pressure."""
+    """Return the mean of height times Westergaard's pressure."""
     x = (np.arange(20000) + 0.5) / 20000 - 0.5
     return float(np.mean(wave_height(x, amplitude) * Wave(load, amplitude, 1.0, modulus).pressure(x)))
 

@@ -52,7 +52,8 @@ def _space() -> list[solid_half_space.SolidJudged]:
 
 
 def _rates(contacts: list[Judged] | list[solid_half_space.SolidJudged]) -> dict[str, list[float]]:
-    """By quantity: the share of contacts where what is stated holds, and the median of stated over true."""
+    """Return by quantity the share of contacts where what is stated holds, and the median of stated over
+    true."""
     found: dict[str, list[float]] = {}
     for name in QUANTITIES:
         pairs = [(abs(c.true[name]), c.stated[name]) for c in contacts if name in c.true]
@@ -132,7 +133,7 @@ def correction() -> Measured:
 
 
 def elastic_wave(slope_deg: float) -> Profiles:
-    """An elastic wave (nu = 0) under a rigid plane, mean pressure 0.3 p*."""
+    """Return an elastic wave (nu = 0) under a rigid plane, mean pressure 0.3 p*."""
     slopes, bodies = (math.tan(math.radians(slope_deg)), 0.0), (Elastic(1.0, 0.0), Elastic(1e6, 0.0))
     return Profiles("crest on flat", slopes, 0.0, (), *bodies, share=0.3, tau=0.0, beta=0.0)
 

@@ -28,14 +28,14 @@ MESHES, GRIDS = (3, 4, 5), (64, 128, 256)
 
 
 def pair_of(slope: float) -> WavyPair:
-    """Steel climbing copper at a steepest slope (degrees)."""
+    """Return steel climbing copper at a steepest slope (degrees)."""
     return WavyPair(slope, SHIFT, COPPER, STEEL, beta=BETA)
 
 
 def by_model(
     slope: float, M: int, *, correction: bool = False, approach: float | None = None
 ) -> tuple[float, float, float]:
-    """(approach / amplitude, mu, N / load) of the pair; `approach` / amplitude replaces the load."""
+    """Return (approach / amplitude, mu, N / load) of the pair; `approach` / amplitude replaces the load."""
     pair = pair_of(slope)
     distance, load = distance_of(pair), SHARE * pair.full_contact_pressure
     depth = None if approach is None else approach * pair.amplitude - distance
@@ -47,7 +47,7 @@ def by_model(
 
 
 def over_meshes(values: list[float]) -> Estimate:
-    """The finest mesh's value; refined by 5/4, so first order leaves four times the change."""
+    """Return the finest mesh's value; refined by 5/4, so first order leaves four times the change."""
     change = float(np.abs(np.diff(values)).max())
     return Estimate(values[-1], change / (MESHES[-1] / MESHES[-2] - 1.0), None)
 
@@ -55,7 +55,8 @@ def over_meshes(values: list[float]) -> Estimate:
 def differences(
     approach: Estimate, friction: Estimate, *, correction: bool
 ) -> dict[str, tuple[float, float]]:
-    """Model against finite elements and its uncertainty, as fractions; all relative to a vanishing slope."""
+    """Return the model against finite elements and its uncertainty, as fractions; all relative to a vanishing
+    slope."""
     steep, slight = ([by_model(s, M, correction=correction) for M in GRIDS] for s in (SLOPE, SLIGHT))
     sunk = Estimate.of(*(a[0] / b[0] for a, b in zip(steep, slight, strict=True)))
     mu = Estimate.of(*(a[1] / b[1] for a, b in zip(steep, slight, strict=True)))

@@ -35,7 +35,7 @@ VARIANTS = ("as printed", "slope correction", "flat coefficients, exact interfac
 def pair_of(
     lower: Material, upper: Material, beta: float, slope_deg: float, shift: float = CLIMBING
 ) -> WavyPair:
-    """The pair at a maximum slope, tau scaled with p*."""
+    """Return the pair at a maximum slope, tau scaled with p*."""
     plain = WavyPair(slope_deg, shift, lower, upper)
     return replace(plain, tau=TAU_SHARE * plain.full_contact_pressure, beta=beta)
 
@@ -52,7 +52,8 @@ class Modelled:
 
 
 def scene_of(pair: WavyPair, load: float, M: int) -> rf.Scene:
-    """The pair on M x M elements of one wavelength, constant along y; `load` per wavelength and thickness."""
+    """Return the pair on M x M elements of one wavelength, constant along y; `load` per wavelength and
+    thickness."""
     x = (np.arange(M) + 0.5) / M - 0.5
     above, below = (
         rf.Body(rf.Material(body.E, body.nu), np.outer(z, np.ones(M)))
@@ -64,7 +65,7 @@ def scene_of(pair: WavyPair, load: float, M: int) -> rf.Scene:
 def modelled(
     pair: WavyPair, load: float, M: int, *, correction: bool, approach: float | None = None
 ) -> Modelled:
-    """`refimpl.solve` on the pair; `approach` from first contact replaces the load.
+    """Return `refimpl.solve` on the pair; `approach` from first contact replaces the load.
 
     Whole elements leave the length uncertain by one of them, which tau carries into the friction. Both are
     taken with the ends found between elements (`contact_fem.ends`), which is the limit of fine grids.
@@ -83,14 +84,14 @@ def modelled(
 
 
 def by_model(pair: WavyPair, share: float, *, correction: bool) -> Numbers:
-    """The model's quantities under a load from three grids."""
+    """Return the model's quantities under a load from three grids."""
     load = share * pair.full_contact_pressure
     found = [modelled(pair, load, M, correction=correction) for M in GRIDS[share]]
     return {q: Estimate.of(*(float(getattr(one, q)) for one in found)) for q in QUANTITIES}
 
 
 def load_at(pair: WavyPair, share: float, approach: float, *, correction: bool) -> Estimate:
-    """The model's N at a prescribed approach (from first contact)."""
+    """Return the model's N at a prescribed approach (from first contact)."""
     load = share * pair.full_contact_pressure
     grids = GRIDS[share]
     found = (modelled(pair, load, M, correction=correction, approach=approach).normal for M in grids)
@@ -102,12 +103,13 @@ def by_fem(sequence: Sequence) -> Numbers:
 
 
 def percent(other: Estimate, fem: Estimate) -> tuple[float, float]:
-    """Difference to the finite elements and its uncertainty, in percent of the finite elements' value."""
+    """Return the difference to the finite elements and its uncertainty, in percent of the finite elements'
+    value."""
     return 100 * (other.value / fem.value - 1), 100 * (other.error + fem.error) / abs(fem.value)
 
 
 def compared(pair: WavyPair, share: float) -> dict[str, tuple[float, float]]:
-    """Percent and uncertainty by 'quantity, variant' for one scene."""
+    """Return percent and uncertainty by 'quantity, variant' for one scene."""
     load = share * pair.full_contact_pressure
     fem = by_fem(slide_on_three_meshes(pair, load))
     found: dict[str, tuple[float, float]] = {}
@@ -130,7 +132,7 @@ def compared(pair: WavyPair, share: float) -> dict[str, tuple[float, float]]:
 def over_slopes(
     lower: Material, upper: Material, beta: float, share: float, *, shift: float = CLIMBING
 ) -> dict[str, object]:
-    """Series over SLOPES for figures: percent and uncertainty of every quantity and variant."""
+    """Return the series over SLOPES for figures: percent and uncertainty of every quantity and variant."""
     found = [compared(pair_of(lower, upper, beta, slope, shift), share) for slope in SLOPES]
     data: dict[str, object] = {"maximum slope (degrees)": list(SLOPES)}
     for label in found[0]:
@@ -140,7 +142,8 @@ def over_slopes(
 
 
 def worst(data: Mapping[str, object], variant: str, slope: float) -> tuple[float, str]:
-    """Largest difference (percent, without sign) of a variant at a slope, and the quantity that has it."""
+    """Return the largest difference (percent, without sign) of a variant at a slope, and the quantity that
+    has it."""
     at = SLOPES.index(slope)
     labels = [label for label in data if label.endswith(variant)]
     values = {label: abs(np.asarray(data[label], dtype=float)[at]) for label in labels}
@@ -149,7 +152,7 @@ def worst(data: Mapping[str, object], variant: str, slope: float) -> tuple[float
 
 
 def verdict(data: Mapping[str, object]) -> str:
-    """In words: the worst quantity at each slope, as printed and corrected."""
+    """State in words the worst quantity at each slope, as printed and corrected."""
     parts = []
     for slope in SLOPES[1:]:
         by = (f"{worst(data, v, slope)[0]:.2f} % ({worst(data, v, slope)[1]})" for v in VARIANTS)

@@ -42,12 +42,12 @@ class SolidJudged:
 
 
 def distance_of(pair: WavyPair) -> float:
-    """Mean planes' distance at first contact."""
+    """Return the mean planes' distance at first contact."""
     return pair.gap_amplitude + 2 * pair.amplitude
 
 
 def by_elements(pair: WavyPair, elements: int) -> tuple[float, float]:
-    """(approach / amplitude, mu) by finite elements."""
+    """Return (approach / amplitude, mu) by finite elements."""
     crest = -pair.shift / 2
     lower = asperity(pair.amplitude, crest, pair.lower.nu, elements).of_modulus(pair.lower.E)
     upper = asperity(pair.amplitude, crest, pair.upper.nu, elements).mirrored().of_modulus(pair.upper.E)
@@ -56,7 +56,7 @@ def by_elements(pair: WavyPair, elements: int) -> tuple[float, float]:
 
 
 def scene_of(pair: WavyPair, M: int) -> rf.Scene:
-    """The pair on M x M elements of one wavelength, under `SHARE` of p*."""
+    """Return the pair on M x M elements of one wavelength, under `SHARE` of p*."""
     x = (np.arange(M) + 0.5) / M - 0.5
     lower, upper = (
         pair.amplitude * np.add.outer(np.cos(WAVENUMBER * (x - crest)), np.cos(WAVENUMBER * x))
@@ -70,7 +70,7 @@ def scene_of(pair: WavyPair, M: int) -> rf.Scene:
 
 
 def _by_model(pair: WavyPair) -> tuple[rf.Solution, HalfSpaceError, float]:
-    """Solution, its error and its approach from first contact over the amplitude."""
+    """Return the solution, its error and its approach from first contact over the amplitude."""
     scene = scene_of(pair, M)
     solution = rf.solve(scene, M, tolerance=1e-6)
     first = (solution.approach + solution.details.problem.datum) / pair.amplitude
@@ -78,7 +78,7 @@ def _by_model(pair: WavyPair) -> tuple[rf.Solution, HalfSpaceError, float]:
 
 
 def judged(lower: Material, upper: Material, shift: float, slope_deg: float) -> SolidJudged:
-    """One pair of asperities."""
+    """Solve one pair of asperities."""
     steep, slight = (WavyPair(s, shift, lower, upper, beta=BETA) for s in (slope_deg, SLIGHT))
     approach, mu = np.array(by_elements(steep, ELEMENTS)) / np.array(by_elements(slight, ELEMENTS))
     (solution, error, first), (plain, _, flat) = _by_model(steep), _by_model(slight)

@@ -17,7 +17,7 @@ DIGITS = 40
 
 
 def printed_stresses(x: Any, y: Any) -> tuple[Any, Any, Any]:
-    """(A1) in mpmath, p = a = 1: (sigma_x, sigma_y, tau)."""
+    """Return (A1) in mpmath, p = a = 1: (sigma_x, sigma_y, tau)."""
     first, second = mp.atan2(y, x - 1), mp.atan2(y, x + 1)
     angle, sines = 2 * (first - second), mp.sin(2 * first) - mp.sin(2 * second)
     tau = (mp.cos(2 * first) - mp.cos(2 * second)) / (2 * mp.pi)
@@ -25,12 +25,12 @@ def printed_stresses(x: Any, y: Any) -> tuple[Any, Any, Any]:
 
 
 def component(n: int) -> Callable[[Any, Any], Any]:
-    """The n-th of (A1) as a function of (x, y)."""
+    """Return the n-th of (A1) as a function of (x, y)."""
     return lambda x, y: printed_stresses(x, y)[n]
 
 
 def trace(x: Any, y: Any) -> Any:
-    """sigma_x + sigma_y."""
+    """Return sigma_x + sigma_y."""
     return sum(printed_stresses(x, y)[:2])
 
 

@@ -58,7 +58,7 @@ class Profiles:
         return self.slopes[0] / WAVENUMBER, self.slopes[1] / WAVENUMBER
 
     def heights(self, x: Array) -> tuple[Array, Array]:
-        """(lower, upper) heights about their mean planes."""
+        """Return (lower, upper) heights about their mean planes."""
         low, high = self.amplitudes
         lower = wave_height(x + self.shift / 2, low, self.harmonics)
         return lower, -wave_height(x - self.shift / 2, high)
@@ -97,7 +97,7 @@ class Profiles:
 
 
 def drawn(seed: int, count: int) -> list[Profiles]:
-    """`count` contacts of a seed, kinds in turn."""
+    """Return `count` contacts of a seed, kinds in turn."""
     random = np.random.default_rng(seed)
     return [_draw(random, KINDS[i % len(KINDS)]) for i in range(count)]
 
@@ -124,7 +124,7 @@ def _draw(random: np.random.Generator, kind: str) -> Profiles:
 
 
 def by_elements(profiles: Profiles) -> Contact:
-    """The contact by finite elements on a mesh that is fine at its ends, as a first solve finds them.
+    """Return the contact by finite elements on a mesh that is fine at its ends, as a first solve finds them.
 
     Raises NotConverged.
     """
@@ -142,7 +142,7 @@ def _pressed(profiles: Profiles, below: MeshPlan, above: MeshPlan) -> Contact:
 
 
 def scene_of(profiles: Profiles, M: int) -> rf.Scene:
-    """The model's scene on M elements along x, periodic and constant across: plane strain."""
+    """Return the model's scene on M elements along x, periodic and constant across: plane strain."""
     x = (np.arange(M) + 0.5) / M - 0.5
     lower, upper = (np.repeat(z[:, None], ACROSS, 1) for z in profiles.heights(x))
     width = ACROSS / M
@@ -157,7 +157,7 @@ def scene_of(profiles: Profiles, M: int) -> rf.Scene:
 
 
 def numbers(profiles: Profiles, solution: rf.Solution) -> dict[str, float]:
-    """mu, A and p_max, the contact's ends found between elements, as by finite elements."""
+    """Return mu, A and p_max, the contact's ends found between elements, as by finite elements."""
     M = solution.grid.shape[0]
     width, x = ACROSS / M, (np.arange(M) + 0.5) / M - 0.5
     friction = profiles.friction
@@ -184,7 +184,7 @@ class Judged:
 
 
 def judged(profiles: Profiles, M: int = 384) -> Judged:
-    """The model's error against finite elements, and what it states of it.
+    """Return the model's error against finite elements, and what it states of it.
 
     N's is at the finite elements' approach, all others' under the load. Areas and friction are taken with
     ends found between elements. Raises NotConverged.

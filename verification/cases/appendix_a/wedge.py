@@ -19,7 +19,8 @@ FLOOR = 1e-12
 
 
 def random_points(count: int) -> Iterator[tuple[float, float, float]]:
-    """(r, theta, gamma): r/a in [1e-4, 1e4], gamma in [1e-6, 1.5], every other one even in its logarithm."""
+    """Yield (r, theta, gamma): r/a in [1e-4, 1e4], gamma in [1e-6, 1.5], every other one even in its
+    logarithm."""
     rng = np.random.default_rng(SEED)
     for n in range(count):
         gamma = rng.uniform(1e-6, 1.5) if n % 2 else np.exp(rng.uniform(np.log(1e-6), np.log(1.5)))
@@ -27,7 +28,8 @@ def random_points(count: int) -> Iterator[tuple[float, float, float]]:
 
 
 def departure(r: float, theta: float, gamma: float, expected: tuple[float, ...]) -> float:
-    """Largest difference of the fast path's components from ``expected``, over the largest component."""
+    """Return the largest difference of the fast path's components from ``expected``, over the largest
+    component."""
     values = np.array(wedge.stresses(r, theta, gamma))
     return float(np.max(np.abs(values - np.array(expected))) / np.max(np.abs(values)))
 

@@ -15,12 +15,12 @@ Array = NDArray[np.float64]
 
 
 def uniform(r: float, theta: Array, gamma: float) -> Array:
-    """Stresses (sigma_r, sigma_theta, tau) of uniform pressure, ``(3, angles)``."""
+    """Return the stresses (sigma_r, sigma_theta, tau) of uniform pressure, ``(3, angles)``."""
     return np.array([-1.0, -1.0, 0.0])[:, None] + 0 * theta
 
 
 def radial(r: float, theta: Array, gamma: float) -> Array:
-    """Michell's radial field of the resultant, ``(3, angles)``."""
+    """Return Michell's radial field of the resultant, ``(3, angles)``."""
     along = -4 * np.cos(gamma) * np.cos(theta) / (np.pi - 2 * gamma + np.sin(2 * gamma)) / r
     return np.array([along, 0 * theta, 0 * theta])
 
@@ -28,7 +28,8 @@ def radial(r: float, theta: Array, gamma: float) -> Array:
 def departure(
     limit: Callable[[float, Array, float], Array], r: float, gamma: float, angles: int = 7
 ) -> float:
-    """Largest difference of the wedge's stresses from a limit at a distance, over evenly spaced angles."""
+    """Return the largest difference of the wedge's stresses from a limit at a distance, over evenly spaced
+    angles."""
     theta = np.linspace(-1, 1, angles) * (np.pi / 2 - gamma)
     return float(np.abs(np.array(wedge.stresses(r, theta, gamma)) - limit(r, theta, gamma)).max())
 

@@ -20,7 +20,7 @@ SCENES = ("table1-smooth", "table1-rough", "metal-polymer", "rough-planes")
 
 @cache
 def solved(name: str, M: int) -> rf.Solution:
-    """A shipped scene's solution."""
+    """Return a shipped scene's solution."""
     solution = rf.solve(rf.read_scene(name), M)
     if solution.status not in (rf.Status.CONVERGED, rf.Status.CYCLED):
         raise RuntimeError(f"{name} ended {solution.status.value}")
@@ -28,7 +28,8 @@ def solved(name: str, M: int) -> rf.Solution:
 
 
 def normal_force(solution: rf.Solution) -> float:
-    """Eq. (2) with trigonometric functions of angles measured on the returned surfaces, exactly summed."""
+    """Return Eq. (2) with trigonometric functions of angles measured on the returned surfaces, exactly
+    summed."""
     common = np.add(*solution.surfaces) / 2
     border = 1 if solution.grid.periodic else 0
     wide, inner = np.pad(common, border, mode="wrap"), slice(border, len(common) + border)
@@ -73,7 +74,8 @@ def prescribed_approach() -> Measured:
 
 @cache
 def loading_curve(nodes: int) -> tuple[Array, Array, float]:
-    """Hertz scene pressed to Gauss's approaches: weights dDelta (m), loads (N), final elastic energy (J).
+    """Return the Hertz scene pressed to Gauss's approaches: weights dDelta (m), loads (N), final elastic
+    energy (J).
 
     With delta = delta_end t^2 the load goes as t^3, which Gauss's rule in t integrates exactly but for the
     kinks where elements join the contact.

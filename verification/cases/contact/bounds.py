@@ -27,25 +27,25 @@ PROVEN = "a bound that is exceeded once is none; the truth is enclosed to 1e-16"
 
 
 def held(known: Enclosure) -> Slopes:
-    """The slopes that the proof holds."""
+    """Return the slopes that the proof holds."""
     tan_x, tan_y = known.scene.tan_x, known.scene.tan_y
     return Slopes.flat(known.contact.shape) if tan_x is None or tan_y is None else Slopes(tan_x, tan_y)
 
 
 @cache
 def loose(name: str, tolerance: float) -> rf.Solution:
-    """The production solver stopped early."""
+    """Stop the production solver early."""
     return named(name).scene.solve("fft", tolerance)
 
 
 def bounds_of(known: Enclosure, problem: Problem, pressure: Array) -> Bounds:
-    """Bounds of a pressure with the proof's slopes and active set of tau."""
+    """Return the bounds of a pressure with the proof's slopes and active set of tau."""
     traction = problem.friction.traction(pressure, known.contact)
     return proven_bounds(problem, pressure, traction, held(known))
 
 
 def energy_of(known: Enclosure, pressure: Array) -> float:
-    """``sum e (a e) dA`` of any pressure e (J), with the textbook's matrix where there is one."""
+    """Return ``sum e (a e) dA`` of any pressure e (J), with the textbook's matrix where there is one."""
     grid, e = known.scene.scene.grid(known.scene.M), pressure.ravel()
     if known.scene.periodic:
         a = DenseInfluence(grid, known.scene.direction).normal_matrix
@@ -55,7 +55,7 @@ def energy_of(known: Enclosure, pressure: Array) -> float:
 
 
 def same_support(known: Enclosure, found: rf.Solution) -> bool:
-    """True if the solution's active set of tau is the proven one."""
+    """Return True if the solution's active set of tau is the proven one."""
     law = known.scene.friction
     if law.tau == 0:
         return True
@@ -64,7 +64,7 @@ def same_support(known: Enclosure, found: rf.Solution) -> bool:
 
 
 def rough_states() -> list[tuple[Enclosure, float, rf.Solution]]:
-    """Every enclosed scene at every loose tolerance."""
+    """Return every enclosed scene at every loose tolerance."""
     return [(known, tol, loose(known.scene.name, tol)) for known in stored() for tol in TOLERANCES]
 
 

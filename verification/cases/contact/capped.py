@@ -1,4 +1,4 @@
-"""Pressures that end at the hardness: both solvers, manufactured states, limits and extremes."""
+"""Pressures capped at the hardness: both solvers, manufactured states, limits and extremes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ AGREE = 1e-9
 
 
 def rough_scene(seed: int) -> rf.Scene:
-    """Rough bodies without a hardness, free or periodic; tau is up to a fifth of the mean pressure."""
+    """Return rough bodies without a hardness, free or periodic; tau is up to a fifth of the mean pressure."""
     random = np.random.default_rng(seed)
     periodic = seed % 3 == 0
     copper, steel = rf.Material(118e9, random.uniform(0.0, 0.45)), rf.Material(200e9, 0.3)
@@ -40,7 +40,7 @@ def rough_scene(seed: int) -> rf.Scene:
 
 
 def with_hardness(scene: rf.Scene, hardness: float, *, upper: bool = False) -> rf.Scene:
-    """The scene with a hardness (Pa) of the lower body, or of the upper one."""
+    """Return the scene with a hardness (Pa) of the lower body, or of the upper one."""
     name = "upper" if upper else "lower"
     body: rf.Body = getattr(scene, name)
     changed = rf.Body(replace(body.material, hardness=hardness), body.surface)
@@ -48,12 +48,13 @@ def with_hardness(scene: rf.Scene, hardness: float, *, upper: bool = False) -> r
 
 
 def peak_of(scene: rf.Scene, grid: int | tuple[int, int]) -> float:
-    """Maximum pressure of the elastic contact of flat slopes (Pa)."""
+    """Return the maximum pressure of the elastic contact of flat slopes (Pa)."""
     return rf.solve(scene, grid, plastic=False, oblique=False).max_pressure
 
 
 def apart(dense: rf.Solution, fft: rf.Solution) -> float:
-    """Largest difference of pressures over H, and of F and Q over the load; infinite on other sets."""
+    """Return the largest difference of pressures over H, and of F and Q over the load; infinite on other
+    sets."""
     if not np.array_equal(dense.contact, fft.contact) or dense.plastic_area != fft.plastic_area:
         return float("inf")
     forces = (getattr(dense, name) - getattr(fft, name) for name in ("friction_force", "binormal_force"))
@@ -167,7 +168,8 @@ def range_of_hardness() -> Measured:
 
 
 def extreme_scene(seed: int) -> rf.Scene:
-    """A scene whose hardness lies between P / A0 and 1e3 elastic peaks, evenly on a logarithmic scale."""
+    """Return a scene whose hardness lies between P / A0 and 1e3 elastic peaks, evenly on a logarithmic
+    scale."""
     random, scene = np.random.default_rng(10_000 + seed), rough_scene(seed)
     least = scene.load / SIDE**2 * (1 + 1e-6)
     most = 1e3 * peak_of(scene, GRID_OF_HARDNESSES)
@@ -175,7 +177,7 @@ def extreme_scene(seed: int) -> rf.Scene:
 
 
 def _is_right(scene: rf.Scene, *, oblique: bool) -> bool:
-    """Whether pressures that are called converged are the plain solver's, where it has a solution."""
+    """Return whether pressures that are called converged are the plain solver's, where it has a solution."""
     fft = rf.solve(scene, GRID_OF_HARDNESSES, plastic=True, oblique=oblique)
     if not fft.converged:
         return True

@@ -21,7 +21,7 @@ LOAD = 0.02 * MODULUS
 
 
 def problems() -> dict[str, ContactProblem]:
-    """Capped problems by name: rough bumps in free space and rough planes that repeat."""
+    """Return capped problems by name: rough bumps in free space and rough planes that repeat."""
     found = {}
     for seed in SEEDS:
         heights = waves(M, seed, longest=2, shortest=7)

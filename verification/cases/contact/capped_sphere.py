@@ -1,4 +1,4 @@
-"""A sphere whose pressure ends at the hardness: an axisymmetric solution, plastic limits, published laws."""
+"""A sphere whose pressure is capped at the hardness: rings, plastic limits, published laws."""
 
 from __future__ import annotations
 
@@ -32,7 +32,8 @@ NU, STEPS = 0.3, 24
 
 
 def sphere_scene(hardness: float, load: float = LOAD) -> rf.Scene:
-    """The frictionless sphere on a flat of that hardness (Pa), in 2.6 times the contact's largest radius."""
+    """Return the frictionless sphere on a flat of that hardness (Pa), in 2.6 times the contact's largest
+    radius."""
     sphere = replace(SPHERE, load=load)
     radius = max(sphere.contact_radius, plastic_limit(sphere, hardness)[0])
     flat = rf.Body(replace(MATERIAL, hardness=hardness), rf.Flat())
@@ -41,7 +42,7 @@ def sphere_scene(hardness: float, load: float = LOAD) -> rf.Scene:
 
 @cache
 def pair(share: float, grid: int) -> tuple[rf.Solution, Capped]:
-    """Our solution and that of rings at a hardness of this share of Hertz' maximum pressure."""
+    """Return our solution and that of rings at a hardness of this share of Hertz' maximum pressure."""
     hardness = share * SPHERE.peak_pressure
     found = rf.solve(sphere_scene(hardness), grid, plastic=True)
     if not found.converged:
@@ -165,7 +166,7 @@ HARDNESS = 0.8e9
 
 
 def _compared(laws: list[Loaded], peak: float) -> Measured:
-    """Largest relative difference of areas from those of a law at equal loads.
+    """Return the largest relative difference of areas from those of a law at equal loads.
 
     ``peak`` is the maximum pressure at first yield (Pa), by whose load and area a law counts.
     """

@@ -17,7 +17,7 @@ MOST = 0.96
 
 
 def scene(seed: int, *, periodic: bool) -> rf.Scene:
-    """A steel ball, or a steel plane, on rough copper without a hardness."""
+    """Return a steel ball, or a steel plane, on rough copper without a hardness."""
     smooth, rms, load = (rf.Flat(), 0.4e-6, 100.0) if periodic else (rf.Sphere(5e-3), 0.8e-6, 50.0)
     upper = rf.Body(rf.Material(200e9, 0.3), smooth)
     lower = rf.Body(rf.Material(118e9, 0.34), rf.GaussianRoughness(rms, 30e-6, seed=seed))
@@ -25,7 +25,7 @@ def scene(seed: int, *, periodic: bool) -> rf.Scene:
 
 
 def ratios(seed: int, M: int, *, periodic: bool) -> dict[str, float]:
-    """Work over that of the elastic contact, by plastic share in per cent, up to `MOST`."""
+    """Return the work over that of the elastic contact, by plastic share in per cent, up to `MOST`."""
     bare = scene(seed, periodic=periodic)
     elastic = rf.solve(bare, M, plastic=False)
     found = {}

@@ -26,7 +26,8 @@ COARSENED = 4
 
 @cache
 def solved(M: int, x: float = 0.0, y: float = 0.0) -> rf.Solution:
-    """The scene with the sphere's axis moved by the shares ``x``, ``y`` of an element from the middle."""
+    """Return the scene with the sphere's axis moved by the shares ``x``, ``y`` of an element from the
+    middle."""
     h = SCENE.lengths[0] / M
     offset = (2 * np.arange(M) + 1 - M) * (h / 2)
     ball = ((offset - x * h)[:, None] ** 2 + (offset - y * h)[None, :] ** 2) / (2 * RADIUS)
@@ -37,14 +38,14 @@ def solved(M: int, x: float = 0.0, y: float = 0.0) -> rf.Solution:
 
 
 def distance(M: int) -> Array:
-    """Distance of the element centres from the axis in the middle (m)."""
+    """Return the distance of the element centres from the axis in the middle (m)."""
     offset = (2 * np.arange(M) + 1 - M) * (SCENE.lengths[0] / M / 2)
     apart: Array = np.hypot(offset[:, None], offset[None, :])
     return apart
 
 
 def spacings() -> list[float]:
-    """Element edges (m), coarse to fine."""
+    """Return the element edges (m), coarse to fine."""
     return [SCENE.lengths[0] / M for M in GRIDS]
 
 
@@ -136,7 +137,8 @@ def profile() -> Measured:
 
 @cache
 def mean_radii(M: int, shifts: int) -> tuple[float, float]:
-    """Radii (m) of the mean area, raw and perimeter-corrected, over ``shifts^2`` positions of the axis.
+    """Return the radii (m) of the mean area, raw and perimeter-corrected, over ``shifts^2`` positions of the
+    axis.
 
     Positions fill one element evenly. Mirror images have the same area, so that only an eighth of them is
     solved and counted with its multiplicity.

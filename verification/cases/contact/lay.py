@@ -20,8 +20,8 @@ WEAK_RMS = 4e-9  # m; the indentation is 1.2 um
 
 
 def weak_forces(seed: int, direction: float) -> tuple[float, float]:
-    """Friction force (N) of a ball on a weakly rough flat without friction, and its first order in the rms:
-    ``int p dz/ds dA`` with Hertz' pressure p, s along the sliding direction."""
+    """Return the friction force (N) of a ball on a weakly rough flat without friction, and its first order in
+    the rms: ``int p dz/ds dA`` with Hertz' pressure p, s along the sliding direction."""
     ball = Sphere(load=70.0, radius=0.14, modulus=STEEL.E / (1 - STEEL.nu**2) / 2)
     a = ball.contact_radius
     side = 3 * a
@@ -62,7 +62,7 @@ SEEDS, DIRECTIONS = range(1, 25), tuple(math.radians(angle) for angle in range(0
 
 @cache
 def turned(name: str) -> Array:
-    """mu, real contact area (m^2) and elastic part of mu: ``(seeds, directions, 3)``."""
+    """Return mu, real contact area (m^2) and elastic part of mu: ``(seeds, directions, 3)``."""
     rows = []
     for seed in SEEDS:
         roughness = rf.GaussianRoughness(RMS, LENGTHS[name], seed)

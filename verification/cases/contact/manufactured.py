@@ -19,7 +19,8 @@ ROUNDING = (
 
 
 def misfit(state: Manufactured, method: Method) -> float:
-    """Largest difference of pressure and traction over the peak, and of approach; infinite on another set."""
+    """Return the largest difference of pressure and traction over the peak, and of approach; infinite on
+    another set."""
     oblique, exact = state.oblique, state.slope_correction
     found = rf.solve(
         state.scene, state.M, method=method, tolerance=1e-13, oblique=oblique, slope_correction=exact

@@ -17,12 +17,12 @@ CIRCLE_GRIDS = (40, 56, 80, 112, 160)
 
 
 def square(x: Array, y: Array) -> Array:
-    """Gap (m) of a punch of side 2 m."""
+    """Return the gap (m) of a punch of side 2 m."""
     return np.where(np.maximum(np.abs(x), np.abs(y)) <= 1, 0.0, 1.0)
 
 
 def circle(x: Array, y: Array) -> Array:
-    """Gap (m) of a punch of radius 1 m: the elements whose centres lie within."""
+    """Return the gap (m) of a punch of radius 1 m: the elements whose centres lie within."""
     return np.where(np.hypot(x, y) <= 1, 0.0, 1.0)
 
 

@@ -25,12 +25,13 @@ from verification.scenes.rectangles import rectangles
 
 @cache
 def trials() -> tuple[Trial, ...]:
-    """The scenes, each solved once for all rows."""
+    """Return the scenes, each solved once for all rows."""
     return cross_check.ended_well(rectangles())
 
 
 def numbers_difference(trial: Trial) -> float:
-    """Largest of the differences that `cross_check` judges one by one, and that of the corrected area."""
+    """Return the largest of the differences that `cross_check` judges one by one, and that of the corrected
+    area."""
     corrected = abs(trial.dense.contact_area_corrected - trial.fft.contact_area_corrected)
     return max(
         corrected / trial.dense.contact_area, *(difference(trial) for difference in cross_check.NUMBERS)
@@ -38,7 +39,7 @@ def numbers_difference(trial: Trial) -> float:
 
 
 def contact_difference(trial: Trial) -> float:
-    """Largest difference of the pressures over the peak; infinite on another contact set."""
+    """Return the largest difference of the pressures over the peak; infinite on another contact set."""
     if not np.array_equal(trial.dense.contact, trial.fft.contact):
         return math.inf
     return cross_check.pressure_difference(trial)
@@ -94,7 +95,7 @@ IMAGES: Mapping[str, tuple[Callable[[Array], Array], Callable[[float], float], i
 
 
 def imaged(trial: Trial, change: Callable[[Array], Array], phi: float) -> rf.Solution:
-    """The dense solution of an image of a scene's heights."""
+    """Return the dense solution of an image of a scene's heights."""
     base = trial.dense
     lower, upper = (np.ascontiguousarray(change(z)) for z in trial.scene.sampled(base.grid))
     same = lower.shape == base.grid.shape
@@ -122,13 +123,13 @@ def imaged(trial: Trial, change: Callable[[Array], Array], phi: float) -> rf.Sol
 
 
 def decided(solution: rf.Solution) -> bool:
-    """True if the proven bounds decide the contact of every element."""
+    """Return True if the proven bounds decide the contact of every element."""
     bounds = solution.details.bounds
     return bool(np.all(bounds.in_contact | bounds.out_of_contact))
 
 
 def image_difference(trial: Trial, image: str) -> float:
-    """The larger of the pressures' difference over the peak and of Q's over N."""
+    """Return the larger of the pressures' difference over the peak and of Q's over N."""
     base, (change, turned, sign) = trial.dense, IMAGES[image]
     found = imaged(trial, change, turned(trial.scene.sliding_direction))
     off = float(np.abs(found.pressure - change(base.pressure)).max()) / base.max_pressure
@@ -157,7 +158,8 @@ def images() -> Measured:
 
 
 def embedded(before: int, after: int) -> tuple[rf.Solution, rf.Solution, Mask]:
-    """A square scene and the same heights in the midst of a longer domain; the square's elements in it."""
+    """Return a square scene and the same heights in the midst of a longer domain; the square's elements in
+    it."""
     M, side = 36, 1.61e-3
     scene = pressed(radius=0.05, rms=0.3e-6, load=10.0, direction=0.7)
     columns, square = M + before + after, slice(before, before + M)
@@ -216,7 +218,7 @@ SERIES = (64, 128, 256)
 
 
 def farthest_from_two(errors: Mapping[str, Sequence[float]], sizes: Sequence[int]) -> Measured:
-    """The order of convergence that is farthest from 2, of errors on grids of those sizes by name."""
+    """Return the order of convergence that is farthest from 2, of errors on grids of those sizes by name."""
     orders = {name: fit_order([1 / n for n in sizes], found).order for name, found in errors.items()}
     farthest = max(orders, key=lambda name: abs(orders[name] - 2))
     return Measured(orders[farthest], 2.0, data={"order": orders}, note=f"farthest: {farthest}")
@@ -224,7 +226,7 @@ def farthest_from_two(errors: Mapping[str, Sequence[float]], sizes: Sequence[int
 
 @cache
 def pressed_ball(domain: str, n: int) -> rf.Solution:
-    """The Hertz scene on a domain."""
+    """Return the Hertz scene on a domain."""
     size, share = DOMAINS[domain]
     return rf.solve(replace(HERTZ, side=None, size=size), (round(n * share[0]), round(n * share[1])))
 
@@ -273,7 +275,7 @@ def hertz_area() -> Measured:
 
 
 def press_wave(axis: int, size: tuple[float, float], shape: tuple[int, int]) -> tuple[float, float]:
-    """Errors of pressure and approach (relative) of a wave along an axis, pressed half flat.
+    """Return the errors of pressure and approach (relative) of a wave along an axis, pressed half flat.
 
     ``size`` and ``shape`` count along and across the wave, which is one unit long.
     """
@@ -314,7 +316,7 @@ WAVES = {
 
 @cache
 def wave_errors(name: str, M: int) -> tuple[float, float]:
-    """Errors of `press_wave` on M elements along the wave."""
+    """Return the errors of `press_wave` on M elements along the wave."""
     axis, size, share = WAVES[name]
     return press_wave(axis, size, (M, round(M * share)))
 
@@ -349,7 +351,8 @@ SEEDS = (1, 2, 3, 4, 5)
 
 
 def work_scene(kind: str, size: tuple[float, float], seed: int) -> rf.Scene:
-    """A rough plane, free or periodic, or a ball on one; the same load and nominal area on any rectangle."""
+    """Return a rough plane, free or periodic, or a ball on one; the same load and nominal area on any
+    rectangle."""
     plane = {"radius": None, "rms": 0.5e-6, "correlation_length": 60e-6}
     ball = {"radius": 0.14, "rms": 0.3e-6, "load": 20.0}
     given = ball if kind == "ball" else plane
@@ -357,7 +360,8 @@ def work_scene(kind: str, size: tuple[float, float], seed: int) -> rf.Scene:
 
 
 def work(kind: str, ratio: float, oblong: float, seed: int) -> float:
-    """Work an element (transforms' ``n log2 n``) on a domain and with elements of those ratios."""
+    """Return the work per element (transforms' ``n log2 n``) on a domain and with elements of those
+    ratios."""
     side = 1.61e-3
     size = (side * math.sqrt(ratio), side / math.sqrt(ratio))
     share = math.sqrt(ratio / oblong)
@@ -369,7 +373,7 @@ def work(kind: str, ratio: float, oblong: float, seed: int) -> float:
 
 
 def relative_work(settings: Sequence[tuple[float, float]]) -> dict[str, dict[str, float]]:
-    """Mean work over that of squares, by ratios and kind of scene."""
+    """Return the mean work over that of squares, by ratios and kind of scene."""
     kinds = ("free", "periodic", "ball")
     square = {kind: [work(kind, 1.0, 1.0, seed) for seed in SEEDS] for kind in kinds}
     table = {}

@@ -54,7 +54,7 @@ def greenwood_tripp_radius() -> Measured:
 
 
 def self_affine(M: int, seed: int, *, longest: int = 4, shortest: int = 16) -> Array:
-    """Periodic random heights ``(M, M)``: flat spectrum to wave ``longest``, Hurst exponent 0.8 to
+    """Return periodic random heights ``(M, M)``: flat spectrum to wave ``longest``, Hurst exponent 0.8 to
     ``shortest``.
 
     The same continuous surface on every grid for a given seed: random waves are drawn by frequency, not by
@@ -76,7 +76,8 @@ LOADS = (0.02, 0.04, 0.08)
 
 
 def area_curves(M: int) -> Array:
-    """Perimeter-corrected contact fraction, shape ``(seeds, loads)``, of five self-affine planes."""
+    """Return the perimeter-corrected contact fraction, shape ``(seeds, loads)``, of five self-affine
+    planes."""
     curves = []
     for seed in range(5):
         heights = 1e-3 * self_affine(M, seed)

@@ -28,7 +28,7 @@ MODULUS, COUPLING = dundurs(lower=SOFT, upper=RIGID)
 
 
 def centres(side: float, M: int) -> tuple[Array, Array]:
-    """Element centres from the middle of the square: x ``(M, 1)`` and y ``(1, M)`` (m)."""
+    """Return the element centres from the middle of the square: x ``(M, 1)`` and y ``(1, M)`` (m)."""
     x = (np.arange(M) + 0.5) / M * side - side / 2
     return x[:, None], x[None, :]
 
@@ -75,5 +75,6 @@ def measured_order(grids: Sequence[int], errors: Sequence[float], expected: floa
 
 
 def first_contact_approach(solution: rf.Solution, gap: Array) -> float:
-    """A periodic solution's approach from first contact (m); the solver counts from the mean planes."""
+    """Return a periodic solution's approach from first contact (m); the solver counts from the mean
+    planes."""
     return solution.approach + float(np.mean(gap) - np.min(gap))

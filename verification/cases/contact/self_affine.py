@@ -35,7 +35,7 @@ SPLIT = rf.Material(E=2 * MODULUS, nu=0.0)  # two of these have E*
 def pressed(
     surface: rf.Surface, M: int, load: float, *, periodic: bool, tolerance: float = 1e-8
 ) -> rf.Solution:
-    """A flat on the surface, without friction and slope terms."""
+    """Press a flat on the surface, without friction and slope terms."""
     bodies = rf.Body(SPLIT, rf.Flat()), rf.Body(SPLIT, surface)
     scene = rf.Scene(*bodies, rf.Friction(), load, SIDE, periodic=periodic)
     solution = rf.solve(scene, grid=M, oblique=False, tolerance=tolerance)
@@ -112,7 +112,8 @@ class Kappas:
 
 @cache
 def kappas() -> Kappas:
-    """Slopes at `PRESSURE`, of the perimeter-corrected area, by each realisation's own rms gradient."""
+    """Return the slopes at `PRESSURE`, of the perimeter-corrected area, by each realisation's own rms
+    gradient."""
     breadths, rows = [], []
     for hurst, ratio, waves in SPECTRA:
         longest = SIDE / waves
@@ -133,7 +134,7 @@ def kappas() -> Kappas:
 
 
 def figure_data(found: Kappas) -> dict[str, object]:
-    """Series over Nayak's parameter, by Hurst exponent, and the published lines."""
+    """Return the series over Nayak's parameter, by Hurst exponent, and the published lines."""
     order = np.argsort(found.nayak)
     low, _ = rough_plane.KAPPA_PUBLISHED
     one = np.ones(len(order))

@@ -22,23 +22,23 @@ GRIDS = (48, 64, 80, 96, 128, 160, 192)
 
 
 def ellipsoid(x: Array, y: Array) -> Array:
-    """Gap of `ELLIPSE` (m)."""
+    """Return the gap of `ELLIPSE` (m)."""
     return ELLIPSE.curvature_x / 2 * x**2 + ELLIPSE.curvature_y / 2 * y**2
 
 
 def cone(x: Array, y: Array) -> Array:
-    """Gap of `CONE` (m)."""
+    """Return the gap of `CONE` (m)."""
     return CONE.slope * np.hypot(x, y)
 
 
 def press_ellipse(M: int) -> tuple[rf.Solution, Array, Array]:
-    """Solution and element centres (m); the square is 2.4 semi-axes wide along the longer one."""
+    """Return the solution and element centres (m); the square is 2.4 semi-axes wide along the longer one."""
     side = 2.4 * ELLIPSE.semi_axes[0]
     return press(ellipsoid, side, M), *centres(side, M)
 
 
 def relative_l2(found: Array, exact: Array) -> float:
-    """Euclidean norm of the difference over that of the exact array."""
+    """Return the Euclidean norm of the difference over that of the exact array."""
     return float(np.linalg.norm(found - exact) / np.linalg.norm(exact))
 
 
@@ -68,13 +68,13 @@ def ellipse_pressure() -> Measured:
 
 
 def ellipse_error(M: int) -> float:
-    """Relative error of the ellipse's approach, from the lowest point between element centres."""
+    """Return the relative error of the ellipse's approach, from the lowest point between element centres."""
     solution, x, y = press_ellipse(M)
     return abs((solution.approach + float(ellipsoid(x, y).min())) / ELLIPSE.approach - 1)
 
 
 def cone_error(M: int) -> float:
-    """Relative error of the cone's approach, from the tip between element centres."""
+    """Return the relative error of the cone's approach, from the tip between element centres."""
     solution, r = press_cone(M)
     return abs((solution.approach + CONE.slope * float(r.min())) / CONE.approach - 1)
 
@@ -118,7 +118,7 @@ def ellipse_outside() -> Measured:
 
 
 def press_cone(M: int) -> tuple[rf.Solution, Array]:
-    """Solution and distance of the element centres from the axis (m)."""
+    """Return the solution and distance of the element centres from the axis (m)."""
     side = 2.4 * CONE.contact_radius
     x, y = centres(side, M)
     return press(cone, side, M), np.hypot(x, y)

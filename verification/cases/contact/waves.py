@@ -26,18 +26,19 @@ GRIDS = (32, 48, 64, 96, 128)
 
 
 def ridge(x: Array, y: Array) -> Array:
-    """Gap (m), constant along y."""
+    """Return the gap (m), constant along y."""
     return AMPLITUDE * (1 - np.cos(2 * np.pi * x / WAVELENGTH)) + 0 * y
 
 
 def egg_box(x: Array, y: Array) -> Array:
-    """Gap (m) of Johnson, Greenwood and Higginson."""
+    """Return the gap (m) of Johnson, Greenwood and Higginson."""
     k = 2 * np.pi / WAVELENGTH
     return AMPLITUDE * (1 - np.cos(k * x) * np.cos(k * y))
 
 
 def press_ridge(share: float, M: int) -> tuple[Wave, rf.Solution, Array]:
-    """Exact wave at ``share`` of p*, the solver's answer, and the exact pressure ``(M, M)`` (Pa)."""
+    """Return the exact wave at ``share`` of p*, the solver's answer, and the exact pressure ``(M, M)``
+    (Pa)."""
     star = Wave(1.0, AMPLITUDE, WAVELENGTH, MODULUS).full_contact_pressure
     wave = Wave(share * star, AMPLITUDE, WAVELENGTH, MODULUS)
     solution = press(ridge, WAVELENGTH, M, load=share * star * WAVELENGTH**2, periodic=True)
@@ -46,7 +47,7 @@ def press_ridge(share: float, M: int) -> tuple[Wave, rf.Solution, Array]:
 
 
 def touch(solution: rf.Solution, gap: Array) -> float:
-    """Approach from the crest itself (m), which lies between element centres."""
+    """Return the approach from the crest itself (m), which lies between element centres."""
     return first_contact_approach(solution, gap) + float(gap.min())
 
 
@@ -107,7 +108,7 @@ def westergaard_full() -> Measured:
 
 
 def press_egg_box(ratio: float, M: int) -> tuple[rf.Solution, Array]:
-    """Solution at ``ratio`` of p*, and the gap (m)."""
+    """Return the solution at ``ratio`` of p*, and the gap (m)."""
     star = jgh.full_contact_pressure(AMPLITUDE, WAVELENGTH, MODULUS)
     solution = press(egg_box, WAVELENGTH, M, load=ratio * star * WAVELENGTH**2, periodic=True)
     return solution, egg_box(*centres(WAVELENGTH, M))
@@ -152,7 +153,7 @@ def jgh_approach() -> Measured:
 
 
 def band_limited(M: int, seed: int) -> Array:
-    """A random gap (m) of waves up to M/6, shape ``(M, M)``."""
+    """Return a random gap (m) of waves up to M/6, shape ``(M, M)``."""
     rng = np.random.default_rng(seed)
     k = np.fft.fftfreq(M, 1 / M)
     wave = np.hypot(k[:, None], k[None, :])
@@ -185,7 +186,7 @@ def full_contact_sliding() -> Measured:
 
 
 def _full_contact_error(friction: rf.Friction, coupling: float, direction: float) -> float:
-    """Largest misfit of pressure (over its peak) and of the approach (relative) on 64 x 64."""
+    """Return the largest misfit of pressure (over its peak) and of the approach (relative) on 64 x 64."""
     gap = band_limited(64, seed=5)
     mean = 200 * np.pi * MODULUS * AMPLITUDE / WAVELENGTH  # 200 p* of the longest wave: no point opens
     exact = fourier.FullContact(gap, WAVELENGTH, MODULUS, mean, coupling, friction.beta, direction)

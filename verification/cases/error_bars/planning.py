@@ -25,7 +25,8 @@ RETURNED = 4 * 8  # bytes per element: both deformed surfaces, gap and indentati
 
 @cache
 def scenes() -> dict[str, tuple[rf.Scene, bool | None]]:
-    """Scenes that require normal contact alone, and ``oblique`` where the scene does not say so."""
+    """Return the scenes that require normal contact alone, and ``oblique`` where the scene does not say
+    so."""
     hertz, table1 = rf.read_scene("hertz"), rf.read_scene("table1-smooth")
     twins = replace(table1, lower=rf.Body(table1.upper.material, table1.lower.surface))
     incompressible = rf.Material(E=10e6, nu=0.5)
@@ -46,7 +47,7 @@ def scenes() -> dict[str, tuple[rf.Scene, bool | None]]:
 
 
 def bare(scene: rf.Scene) -> Counter:
-    """Operation counts of normal contact, without the planner."""
+    """Return the operation counts of normal contact, without the planner."""
     counter = Counter()
     problem = discretise(replace(scene, friction=rf.Friction()), scene.grid(M), BARE)
     solve_fft(problem, 1e-8, counter)
@@ -54,7 +55,8 @@ def bare(scene: rf.Scene) -> Counter:
 
 
 def peak(run: Callable[[], object]) -> float:
-    """Peak of Python's and numpy's memory (bytes per element) in a second run: kernels are tabulated once."""
+    """Return the peak of Python's and numpy's memory (bytes per element) in a second run: kernels are
+    tabulated once."""
     run()
     tracemalloc.start()
     try:
@@ -109,7 +111,7 @@ def cerruti() -> Measured:
 
 
 def shear_operations(solution: rf.Solution) -> int:
-    """Shear kernels built and applied."""
+    """Return the shear kernels built and applied."""
     return sum(number for kind, number in solution.cost.applications.items() if "shear" in kind)
 
 

@@ -19,22 +19,22 @@ SCENES, M, ACCURACY = 100, 256, 0.01
 
 @cache
 def scenes() -> list[Trial]:
-    """All terms of all scenes that are not exactly zero, and the slope correction."""
+    """Return all terms of all scenes that are not exactly zero, and the slope correction."""
     return trials(SEED, SCENES, M, ACCURACY)
 
 
 def studied() -> list[Trial]:
-    """The terms that a plan chooses."""
+    """Return the terms that a plan chooses."""
     return [trial for trial in scenes() if trial.term != CORRECTION]
 
 
 def neglected() -> list[Trial]:
-    """Terms that the plan neglects at the accuracy."""
+    """Return the terms that the plan neglects at the accuracy."""
     return [trial for trial in studied() if trial.neglected]
 
 
 def ratio(trial: Trial) -> float:
-    """Larger estimate over larger effect; infinite for no effect at all."""
+    """Return the larger estimate over larger effect; infinite for no effect at all."""
     return trial.estimate.larger / trial.effect.larger if trial.effect.larger > 0 else math.inf
 
 

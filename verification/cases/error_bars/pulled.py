@@ -22,14 +22,14 @@ SOURCE = "finer grids; Eqs (3) and (5): Cerruti's part of the gap"
 
 
 def ball(R: float, a: float, lower: rf.Material, upper: rf.Material) -> tuple[rf.Scene, float]:
-    """A ball of radius R on a flat, pressed to a contact of radius a (m); its mean pressure (Pa)."""
+    """Return a ball of radius R on a flat, pressed to a contact of radius a (m); its mean pressure (Pa)."""
     load = 4 * Pair(lower=lower, upper=upper).reduced_modulus * a**3 / (3 * R)
     bodies = rf.Body(upper, rf.Sphere(R)), rf.Body(lower, rf.Flat())
     return rf.Scene(*bodies, rf.Friction(), load=load, side=SIDE), load / (math.pi * a**2)
 
 
 def off(scene: rf.Scene, M: int, approach: float | None = None) -> dict[str, float]:
-    """Errors over their bars of the approach, or of N and p_max at an approach (m).
+    """Return the errors over their bars of the approach, or of N and p_max at an approach (m).
 
     Errors are 4/3 of differences from a finer grid, of an approach 8/7: that much the finer grid may be off
     itself, where errors fall with the element only, or its power 3/2. (Errors of approaches fall with its
@@ -57,17 +57,17 @@ class _Dice:
         self.lower, self.upper = (soft, hard) if self.rng.random() < 0.5 else (hard, soft)
 
     def log(self, low: float, high: float) -> float:
-        """A log-uniform number."""
+        """Return a log-uniform number."""
         return math.exp(self.rng.uniform(math.log(low), math.log(high)))
 
     def friction(self, pressure: float) -> rf.Friction:
-        """Tau, and in half of the scenes beta."""
+        """Return tau, and in half of the scenes beta."""
         beta = 0.0 if self.rng.random() < 0.5 else self.log(0.05, 0.4)
         return rf.Friction(tau=pressure * self.log(0.05, 0.8), beta=beta)
 
 
 def _on_a_ball(seed: int) -> tuple[rf.Scene, float]:
-    """A ball, every second one rough, and an approach that presses it less than its load does (m)."""
+    """Return a ball, every second one rough, and an approach that presses it less than its load does (m)."""
     dice = _Dice(seed)
     R, a = SIDE * dice.log(3, 30), SIDE * dice.log(0.12, 0.28)
     scene, pressure = ball(R, a, dice.lower, dice.upper)
@@ -79,7 +79,7 @@ def _on_a_ball(seed: int) -> tuple[rf.Scene, float]:
 
 
 def _on_a_plane(seed: int) -> rf.Scene:
-    """A rough plane that repeats, under 0.05 to 0.4 of the pressure that would flatten it about."""
+    """Return a rough plane that repeats, under 0.05 to 0.4 of the pressure that would flatten it about."""
     dice = _Dice(seed)
     rough = rf.GaussianRoughness(SIDE * dice.log(1e-4, 1e-2), SIDE * dice.log(0.2, 0.5), seed=seed)
     pressure = Pair(lower=dice.lower, upper=dice.upper).reduced_modulus * rough.rms_slope
@@ -95,7 +95,7 @@ def _sliding(scene: rf.Scene, dice: _Dice, pressure: float) -> rf.Scene:
 
 
 def random_shares() -> Iterator[tuple[str, float]]:
-    """Errors over bars of all random scenes, by kind and number."""
+    """Yield the errors over bars of all random scenes, by kind and number."""
     for seed in range(SCENES):
         M = (32, 48, 64)[seed % 3]
         scene, depth = _on_a_ball(seed)

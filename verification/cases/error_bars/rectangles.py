@@ -20,27 +20,28 @@ NUMBERS = ("friction_coefficient", "contact_area", "contact_area_corrected",
 
 
 def ratio_of(seed: int) -> float:
-    """The ratio x to y of a scene: of its domain, or of its elements on a square."""
+    """Return the ratio x to y of a scene: of its domain, or of its elements on a square."""
     ratio = RATIOS[seed % len(RATIOS)]
     return 1 / ratio if seed // len(RATIOS) % 2 else ratio
 
 
 def on_rectangle(seed: int) -> tuple[rf.Scene, list[tuple[int, int]]]:
-    """A random scene on a rectangle of the same area, and the grids of its refinement."""
+    """Return a random scene on a rectangle of the same area, and the grids of its refinement."""
     root = math.sqrt(ratio_of(seed))
     scene = replace(random_scene(seed).scene, side=None, size=(SIDE * root, SIDE / root))
     return scene, [scene.refined(M).shape for M in (*SIZES, FINEST)]
 
 
 def on_oblong_elements(seed: int) -> tuple[rf.Scene, list[tuple[int, int]]]:
-    """A random scene on its square, and grids of as many oblong elements as a square's."""
+    """Return a random scene on its square, and grids of as many oblong elements as a square's."""
     root = math.sqrt(ratio_of(seed))
     n, m = (8 * round(SIZES[0] * factor / 8) for factor in (root, 1 / root))
     return random_scene(seed).scene, [(n * M // SIZES[0], m * M // SIZES[0]) for M in (*SIZES, FINEST)]
 
 
 def covered(*, oblong: bool) -> tuple[Mapping[str, float], int]:
-    """Share of scenes whose bar on three grids covers the finest grid's number; the number of scenes."""
+    """Return the share of scenes whose bar on three grids covers the finest grid's number; the number of
+    scenes."""
     held = dict.fromkeys(NUMBERS, 0)
     bounded = dict.fromkeys(NUMBERS, 0)
     solved = 0

@@ -38,7 +38,7 @@ REASON = (
 def worst(
     kernel: Callable[..., Any], error: Callable[[float, Point], float], groups: dict[str, Iterable[Point]]
 ) -> Measured:
-    """Largest error over groups of points; ``data`` has it group by group."""
+    """Return the largest error over groups of points; ``data`` has it group by group."""
     errors = {name: [error(float(kernel(*p)), p) for p in points] for name, points in groups.items()}
     largest = {name: max(found) for name, found in errors.items()}
     note = f"{sum(map(len, errors.values()))} points"
@@ -46,7 +46,7 @@ def worst(
 
 
 def all_points() -> dict[str, Iterable[Point]]:
-    """Points at which both integrals are judged."""
+    """Return the points at which both integrals are judged."""
     return {
         "random": random_points(seed=2001, count=800),
         "centre, edges, corners, far ends": awkward_points(),
@@ -76,7 +76,7 @@ def accuracy(kernel: Callable[..., Any], exact: Callable[..., Any]) -> Measured:
 
 
 def enclosed_points() -> dict[str, Iterable[Point]]:
-    """A smaller set, in the first quadrant and off the axis, as the enclosures ask."""
+    """Return a smaller set, in the first quadrant and off the axis, as the enclosures ask."""
     random = [(abs(x), abs(y), dx, dy) for x, y, dx, dy in random_points(seed=2002, count=120) if x != 0]
     return {"random": random, "centre, edges, corners": [p for p in awkward_points() if 1e-8 < p[0] < 3][::4]}
 

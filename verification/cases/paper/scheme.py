@@ -31,31 +31,31 @@ STEPS_LEFT = 5.0
 
 @cache
 def trials() -> dict[str, Trial]:
-    """The cross-check's aperiodic scenes by name, solved at most once each."""
+    """Return the cross-check's aperiodic scenes by name, solved at most once each."""
     return {trial.name: trial for trial in cross_checks() if not trial.scene.periodic}
 
 
 @cache
 def paper(name: str, tolerance: float) -> rf.Solution:
-    """The scheme's solution of a trial."""
+    """Return the scheme's solution of a trial."""
     trial = trials()[name]
     return rf.solve(trial.scene, trial.M, method="paper", tolerance=tolerance, **trial.options)
 
 
 def traced(scene: rf.Scene, M: int, tolerance: float) -> tuple[Array, Trace]:
-    """Pressure (Pa) and trace of the scheme."""
+    """Return the pressure (Pa) and trace of the scheme."""
     plan = Options(scene=scene, grid=M, method="paper").plan()
     state, trace = solve_paper(discretise(scene, plan.grid, plan.switches), tolerance, Counter())
     return state.pressure, trace
 
 
 def distance(found: rf.Solution, reference: rf.Solution) -> float:
-    """Largest difference of two pressures over the reference's peak."""
+    """Return the largest difference of two pressures over the reference's peak."""
     return float(np.abs(found.pressure - reference.pressure).max()) / reference.max_pressure
 
 
 def chosen(scenes: str) -> tuple[str, ...]:
-    """Names of the "twelve" scenes or of "all"."""
+    """Return the names of the "twelve" scenes or of "all"."""
     return QUICK if scenes == "twelve" else tuple(trials())
 
 

@@ -24,7 +24,7 @@ EITHER = (rf.Status.CONVERGED, rf.Status.CYCLED)
 
 
 def sliding_wave(share: float, M: int, tau: float = 0.0) -> tuple[SlidingWave, rf.Solution]:
-    """Exact and computed wave at ``share`` of p*, sliding along x with `BETA` and ``tau`` (Pa)."""
+    """Return the exact and computed wave at ``share`` of p*, sliding along x with `BETA` and ``tau`` (Pa)."""
     wave = SlidingWave(share * STAR, AMPLITUDE, WAVELENGTH, MODULUS, COUPLING, tau, BETA)
     load = share * STAR * WAVELENGTH**2
     friction = rf.Friction(tau, BETA)
@@ -32,7 +32,7 @@ def sliding_wave(share: float, M: int, tau: float = 0.0) -> tuple[SlidingWave, r
 
 
 def centroid(solution: rf.Solution, x: Array) -> float:
-    """Pressure-weighted mean of ``x`` (m)."""
+    """Return the pressure-weighted mean of ``x`` (m)."""
     return float(np.sum(solution.pressure * x) / np.sum(solution.pressure))
 
 
@@ -106,7 +106,7 @@ def sliding_cylinder_shift() -> Measured:
 
 
 def press_coupled(M: int, direction: float) -> tuple[rf.Solution, Array]:
-    """The solution, and the distances of element centres from the axis (m)."""
+    """Return the solution, and the distances of element centres from the axis (m)."""
     state = CoupledHertz(HERTZ, C0, tau=0.3 * HERTZ.peak_pressure, beta=BETA)
     side = 2.6 * HERTZ.contact_radius
     cos, sin = np.cos(direction), np.sin(direction)

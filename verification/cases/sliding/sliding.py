@@ -20,7 +20,7 @@ RADIUS, M = 0.14, 256
 
 @cache
 def solved(tau: float, beta: float, direction: float = 0.0, oblique: bool | None = None) -> rf.Solution:
-    """Table 1's smooth scene with another friction law or direction, at 256 x 256."""
+    """Return Table 1's smooth scene with another friction law or direction, at 256 x 256."""
     scene = replace(SCENE, friction=rf.Friction(tau, beta), sliding_direction=direction)
     solution = rf.solve(scene, M, oblique=oblique)
     if solution.status not in (rf.Status.CONVERGED, rf.Status.CYCLED):
@@ -29,12 +29,13 @@ def solved(tau: float, beta: float, direction: float = 0.0, oblique: bool | None
 
 
 def offset() -> Array:
-    """Element centres from the middle along one axis (m)."""
+    """Return the element centres from the middle along one axis (m)."""
     return (2 * np.arange(M, dtype=np.float64) + 1 - M) * (SCENE.lengths[0] / M / 2)
 
 
 def centroid(pressure: Array, direction: float) -> tuple[float, float]:
-    """Centroid of the pressure from the sphere's axis, along and across the sliding direction (m)."""
+    """Return the centroid of the pressure from the sphere's axis, along and across the sliding direction
+    (m)."""
     x = float(np.sum(pressure * offset()[:, None]) / pressure.sum())
     y = float(np.sum(pressure * offset()[None, :]) / pressure.sum())
     cos, sin = math.cos(direction), math.sin(direction)

@@ -17,7 +17,7 @@ ENDED_WELL = (rf.Status.CONVERGED, rf.Status.CYCLED)
 
 
 def ended_well(trials: tuple[Trial, ...]) -> tuple[Trial, ...]:
-    """The trials; RuntimeError where a solver did not end with a certified state."""
+    """Return the trials; RuntimeError where a solver did not end with a certified state."""
     for trial in trials:
         for solution in (trial.dense, trial.fft):
             if solution.status not in ENDED_WELL:
@@ -27,46 +27,47 @@ def ended_well(trials: tuple[Trial, ...]) -> tuple[Trial, ...]:
 
 @cache
 def trials() -> tuple[Trial, ...]:
-    """The scenes, each solved once for all rows."""
+    """Return the scenes, each solved once for all rows."""
     return ended_well(cross_checks())
 
 
 def by_scene(difference: Callable[[Trial], float]) -> Mapping[str, float]:
-    """The difference of both solvers on each scene."""
+    """Return the difference of both solvers on each scene."""
     return {trial.name: difference(trial) for trial in trials()}
 
 
 def worst_of(differences: Mapping[str, float]) -> Measured:
-    """The largest difference, with all of them as the figure's series."""
+    """Return the largest difference, with all of them as the figure's series."""
     name = max(differences, key=lambda key: differences[key])
     note = f"largest on {name}; {len(differences)} scenes"
     return Measured(value=differences[name], data={"worst": differences}, note=note)
 
 
 def pressure_difference(trial: Trial) -> float:
-    """Largest difference of the pressures over the peak."""
+    """Return the largest difference of the pressures over the peak."""
     off = np.abs(trial.dense.pressure - trial.fft.pressure).max()
     return float(off) / trial.dense.max_pressure
 
 
 def approach_difference(trial: Trial) -> float:
-    """Difference of the approaches, relative and from first contact, where a periodic one is never zero."""
+    """Return the difference of the approaches, relative and from first contact, where a periodic one is never
+    zero."""
     dense, fft = trial.dense, trial.fft
     return abs(dense.approach - fft.approach) / abs(dense.approach + dense.details.problem.datum)
 
 
 def area_difference(trial: Trial) -> float:
-    """Relative difference of the contact areas."""
+    """Return the relative difference of the contact areas."""
     return abs(trial.fft.contact_area / trial.dense.contact_area - 1)
 
 
 def friction_difference(trial: Trial) -> float:
-    """Difference of the friction coefficients."""
+    """Return the difference of the friction coefficients."""
     return abs(trial.dense.friction_coefficient - trial.fft.friction_coefficient)
 
 
 def binormal_difference(trial: Trial) -> float:
-    """Difference of the transverse forces over the load."""
+    """Return the difference of the transverse forces over the load."""
     return abs(trial.dense.binormal_force - trial.fft.binormal_force) / trial.dense.normal_force
 
 

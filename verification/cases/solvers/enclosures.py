@@ -21,18 +21,18 @@ ASKED = "solvers have the tolerance 1e-12; the error of a force or of the approa
 
 @cache
 def solution(name: str, method: Method) -> rf.Solution:
-    """The stored scene's solution; solved once for all cases here."""
+    """Return the stored scene's solution; solved once for all cases here."""
     return named(name).scene.solve(method)
 
 
 def approach(found: rf.Solution) -> float:
-    """From first contact (m); a periodic solution's counts from the mean planes."""
+    """Return the approach from first contact (m); a periodic solution's counts from the mean planes."""
     mean = float(found.details.problem.gap.mean()) if found.grid.periodic else 0.0
     return found.approach + mean
 
 
 def by_scene(error: Callable[[Enclosure, rf.Solution], float]) -> dict[str, list[float]]:
-    """Errors of both solvers, scene by scene."""
+    """Return the errors of both solvers, scene by scene."""
     return {
         known.scene.name: [error(known, solution(known.scene.name, method)) for method in METHODS]
         for known in stored()
@@ -40,7 +40,7 @@ def by_scene(error: Callable[[Enclosure, rf.Solution], float]) -> dict[str, list
 
 
 def measured(errors: dict[str, list[float]]) -> Measured:
-    """The largest error, with the series."""
+    """Return the largest error, with the series."""
     dense, fft = (list(column) for column in zip(*errors.values(), strict=True))
     value = max(dense + fft)
     return Measured(value=value, data={"scene": list(errors), "dense": dense, "fft": fft})
@@ -58,7 +58,7 @@ def contact_sets() -> Measured:
 
 
 def pressure_error(known: Enclosure, found: rf.Solution) -> float:
-    """Largest distance from the proven pressure, over the peak."""
+    """Return the largest distance from the proven pressure, over the peak."""
     miss = float(np.abs(found.pressure - known.pressure).max()) + known.radius
     return miss / float(known.pressure.max())
 

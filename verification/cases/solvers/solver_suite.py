@@ -20,7 +20,7 @@ NAMED = tuple(check.id for check in suite() if not check.slug.startswith("design
 
 @cache
 def verdicts(fault: Fault) -> dict[str, str]:
-    """Status of every case of the suite, by slug, for the solver with a fault."""
+    """Return the status of every case of the suite, by slug, for the solver with a fault."""
     return {r.id.partition("/")[2]: r.status for r in run(FAULTY[fault](), NAMED)}
 
 

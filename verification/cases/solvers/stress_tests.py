@@ -23,7 +23,7 @@ COSTLY = ("grid", "finite elements", "wedge")
 
 
 def counted(rows: list[Row]) -> Measured:
-    """The number of wrong results and of crashes, with the table of verdicts and digits."""
+    """Return the number of wrong results and of crashes, with the table of verdicts and digits."""
     numbers = counts(rows)
     numbers.pop("wrong")
     table = [

@@ -39,7 +39,8 @@ _STEPS = 20_000  # at most, of L-BFGS-B
 
 
 def table2_scene() -> rf.Scene:
-    """Table 2's contact as far as the paper tells it: "a half-space and a sphere with a rough surface".
+    """Return Table 2's contact as far as the paper tells it: "a half-space and a sphere with a rough
+    surface".
 
     Sphere, moduli, load and side are those of Table 1, the roughness is the only one that the paper gives
     its sphere, 0.084 um; the half-space is smooth, and there is no friction ("static contact").
@@ -89,7 +90,7 @@ class Energy:
         return FFTInfluence(self.problem.grid, self.problem.direction)
 
     def matrix(self) -> Array:
-        """``I[1/rho]`` of unit elements between all pairs of unknowns, ``(n, n)``."""
+        """Return ``I[1/rho]`` of unit elements between all pairs of unknowns, ``(n, n)``."""
         table = unit_table("normal", self.problem.grid.shape)
         i, j = np.nonzero(self.interference)
         pairs = np.empty((len(i), len(i)))
@@ -98,12 +99,12 @@ class Energy:
         return pairs
 
     def apply(self, x: Array) -> Array:
-        """``A x`` by FFT, ``(n,)``."""
+        """Return ``A x`` by FFT, ``(n,)``."""
         displacement: Array = self.operator.normal(self._spread(x))[self.interference]
         return displacement / self.problem.grid.element_size
 
     def pressure(self, x: Array) -> Array:
-        """Pressures on the whole grid, ``(M, M)`` (Pa)."""
+        """Return the pressures on the whole grid, ``(M, M)`` (Pa)."""
         unit = self.approach / (self.problem.pair.normal_compliance * self.problem.grid.element_size)
         return unit * self._spread(x)
 
@@ -157,19 +158,19 @@ MINIMISERS: Mapping[str, Callable[[Energy], Array]] = {
 
 @cache
 def reference() -> rf.Solution:
-    """The dense reference of Table 2's scene: pivoting on Eq. (7), no minimiser."""
+    """Return the dense reference of Table 2's scene: pivoting on Eq. (7), no minimiser."""
     return rf.solve(table2_scene(), grid=M_QUICK, method="dense", oblique=False)
 
 
 @cache
 def minimum(name: str) -> Array:
-    """Pressure (Pa) of one minimiser at the reference's approach."""
+    """Return the pressure (Pa) of one minimiser at the reference's approach."""
     energy = Energy.on(M_QUICK, reference().approach)
     return energy.pressure(MINIMISERS[name](energy))
 
 
 def departure(name: str) -> Measured:
-    """Largest difference of a method's pressure from the reference, over the peak."""
+    """Return the largest difference of a method's pressure from the reference, over the peak."""
     return Measured(float(np.abs(minimum(name) - reference().pressure).max() / reference().max_pressure))
 
 
@@ -338,7 +339,7 @@ Bhushan 1996."""
 
 
 def growth(seconds: Mapping[int, float]) -> float:
-    """Exponent of a cost in the number of elements ``M^2``, fitted to all grids.
+    """Return the exponent of a cost in the number of elements ``M^2``, fitted to all grids.
 
     >>> round(growth({10: 3.0, 20: 48.0, 40: 768.0}), 12)
     2.0

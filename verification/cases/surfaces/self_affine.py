@@ -20,7 +20,7 @@ SEEDS = range(1, 9)
 
 
 def rough(seed: int) -> SelfAffineRoughness:
-    """A realisation of unit rms height."""
+    """Return a realisation of unit rms height."""
     return SelfAffineRoughness(
         hurst=HURST, rms=1.0, roll_off=ROLL_OFF, long_cut=LONG_CUT, short_cut=SHORT_CUT, seed=seed
     )
@@ -28,8 +28,8 @@ def rough(seed: int) -> SelfAffineRoughness:
 
 @cache
 def spectrum() -> tuple[Array, Array, Array]:
-    """Waves of half the periodic domain, by the specified PSD: wave number, squared coefficient of every
-    seed ``(seeds, waves)``, and its expectation for unit rms height."""
+    """Return the waves of half the periodic domain, by the specified PSD: wave number, squared coefficient of
+    every seed ``(seeds, waves)``, and its expectation for unit rms height."""
     fields = [rough(seed).sample(Grid.square(SIDE, POINTS, periodic=True)) for seed in SEEDS]
     q = 2 * math.pi * np.fft.fftfreq(POINTS, SIDE / POINTS)
     length = np.hypot(q[:, None], q[None, :])

@@ -25,7 +25,7 @@ def skewness() -> Measured:
 
 
 def whitened(seed: int, lengths: int, points: int) -> Array:
-    """Independent numbers of unit variance from a periodic field of unit rms and correlation length.
+    """Return independent numbers of unit variance from a periodic field of unit rms and correlation length.
 
     The field's modes up to two waves per length, each over the root of its power by Eq. (9); a Gaussian
     field's are independent normal numbers, and so is their Fourier sum on ``points`` per side.
@@ -62,13 +62,13 @@ SEEDS, SIDE, POINTS = range(1, 31), 40.0, 160
 
 
 def equation_9(x: float, y: float, lengths: tuple[float, float], lay: float) -> float:
-    """Eq. (9) at a lag (x, y) over rms^2."""
+    """Return Eq. (9) at a lag (x, y) over rms^2."""
     along, across = x * math.cos(lay) + y * math.sin(lay), y * math.cos(lay) - x * math.sin(lay)
     return math.exp(-2.3 * ((along / lengths[0]) ** 2 + (across / lengths[1]) ** 2))
 
 
 def mean_product(z: Array, i: int, j: int) -> float:
-    """Mean product of heights that are (i, j) points apart, i >= 0."""
+    """Return the mean product of heights that are (i, j) points apart, i >= 0."""
     n = len(z)
     ahead = z[i:, max(j, 0) : n + min(j, 0)]
     return float(np.mean(ahead * z[: n - i, max(-j, 0) : n - max(j, 0)]))

@@ -23,7 +23,7 @@ AREA = len(SEEDS) * LENGTHS**2  # in squared correlation lengths
 
 
 def ensemble() -> list[Array]:
-    """Realisations of unit rms on squares of 40 unit correlation lengths."""
+    """Return the realisations of unit rms on squares of 40 unit correlation lengths."""
     grid = Grid.square(float(LENGTHS), LENGTHS * PER_LENGTH)
     return [GaussianRoughness(1.0, 1.0, seed).heights(grid) for seed in SEEDS]
 
@@ -70,7 +70,7 @@ def autocorrelation() -> Measured:
 
 
 def _mean_product(z: Array, lag: int) -> float:
-    """Mean of z(x) z(x + lag) over both axes; the mean height of the ensemble, 0, is known."""
+    """Return the mean of z(x) z(x + lag) over both axes; the mean height of the ensemble, 0, is known."""
     n = len(z) - lag
     return float((np.mean(z[:n] * z[lag:]) + np.mean(z[:, :n] * z[:, lag:])) / 2.0)
 

@@ -51,7 +51,7 @@ def _checks(designs: Mapping[str, Sequence[dict[str, Any]]]) -> tuple[Check, ...
 
 @cache
 def further() -> tuple[Check, ...]:
-    """Checks of the further designs, which ``--thorough`` adds to the suite."""
+    """Return the checks of the further designs, which ``--thorough`` adds to the suite."""
     return _checks(further_rows())
 
 

@@ -47,15 +47,15 @@ def in_turn(*problems: Press) -> Judge:
 
 
 def loads(gap: Array, other: Array, **how: Any) -> Judge:
-    """A gap; at three times the modulus; at twice the spacing too; another size; the first again."""
+    """Pose a gap; at three times the modulus; at twice the spacing too; another size; the first again."""
     first = pressing(gap, **how)
     stiff, spread = pressing(gap, modulus=STIFF, **how), pressing(gap, 2.0, modulus=STIFF, **how)
     return in_turn(first, stiff, spread, pressing(other, **how), first)
 
 
 def approaches(gap: Array, lightly: float, well: float, **how: Any) -> Judge:
-    """A gap at two approaches, the second at three times the modulus, and at twice the spacing too; and the
-    first again.
+    """Pose a gap at two approaches, the second at three times the modulus, and at twice the spacing too; and
+    the first again.
     """
     first, deeper = pressing(gap, deep=lightly, **how), how | {"deep": well}
     stiff, spread = pressing(gap, modulus=STIFF, **deeper), pressing(gap, 2.0, modulus=STIFF, **deeper)

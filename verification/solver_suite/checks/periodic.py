@@ -27,18 +27,18 @@ AT_APPROACH = (F.MEAN_PLANES_LOST, F.MODULUS_OFF, F.MODULUS_DOUBLED, F.APERIODIC
 
 
 def ridge(n: int) -> Array:
-    """Gap (m) of a wave along x."""
+    """Return the gap (m) of a wave along x."""
     return AMPLITUDE * (1 - np.cos(2 * np.pi * centres(1.0, n)[0])) * np.ones((n, n))
 
 
 def egg_box(n: int) -> Array:
-    """Gap (m) of Johnson, Greenwood and Higginson."""
+    """Return the gap (m) of Johnson, Greenwood and Higginson."""
     x, y = centres(1.0, n)
     return np.asarray(AMPLITUDE * (1 - np.cos(2 * np.pi * x) * np.cos(2 * np.pi * y)))
 
 
 def wave(share: float = 0.5) -> Wave:
-    """Westergaard's wave at a share of the full-contact load."""
+    """Return Westergaard's wave at a share of the full-contact load."""
     return Wave(share * STAR, AMPLITUDE, 1.0, MODULUS)
 
 
@@ -62,7 +62,7 @@ def _egg_box_load(entrant: Entrant) -> Measured:
 
 
 def ridge_pressures(entrant: Entrant, n: int) -> Fields:
-    """Pressures of a wave at half the full-contact load."""
+    """Return the pressures of a wave at half the full-contact load."""
     pressed = entrant.press(ridge(n), load=0.5 * STAR, periodic=True)
     return pressed.pressure, wave().pressure(centres(1.0, n)[0]) * np.ones((n, n))
 

@@ -29,13 +29,14 @@ LOAD, LIGHT = 0.03 * MODULUS, 0.01 * MODULUS
 
 
 def bump(rows: int, columns: int, seed: int) -> Array:
-    """A rough bump (m) on a part of the unit square: ``rows`` of 48 elements along x, and so along y."""
+    """Return a rough bump (m) on a part of the unit square: ``rows`` of 48 elements along x, and so along
+    y."""
     i, j = (48 - rows) // 2, (48 - columns) // 2
     return rough_bump(48, seed)[i : i + rows, j : j + columns]
 
 
 def wavy(rows: int, columns: int, seed: int) -> Array:
-    """A periodic rough gap (m) of waves up to a sixth of the elements."""
+    """Return a periodic rough gap (m) of waves up to a sixth of the elements."""
     k = [np.fft.fftfreq(n) for n in (rows, columns)]
     wave = np.hypot(k[0][:, None], k[1][None, :])
     noise = np.fft.fft2(np.random.default_rng(seed).standard_normal((rows, columns)))

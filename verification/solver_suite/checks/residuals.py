@@ -48,7 +48,7 @@ LOADS = (0.001, 0.01, 0.05)
 
 
 def judged(entrant: Entrant, pressed: Pressed) -> Measured:
-    """The worst residual in claims, with all three in the note."""
+    """Return the worst residual in claims, with all three in the note."""
     parts = reference_solution.residual(pressed.problem, pressed.pressure)
     gap, balance, tension = (f"{part:.1e}" for part in parts)
     note = f"complementarity gap {gap}, load balance {balance}, tension {tension}"
@@ -58,7 +58,7 @@ def judged(entrant: Entrant, pressed: Pressed) -> Measured:
 def worst_in_turn(
     entrant: Entrant, answers: Sequence[Pressed], judge: Callable[[Entrant, Pressed], Measured] = judged
 ) -> Measured:
-    """The worst of problems in turn; the note names it and the fields changed from the one before."""
+    """Return the worst of problems in turn; the note names it and the fields changed from the one before."""
     found = [judge(entrant, each) for each in answers]
     k = max(range(len(found)), key=lambda k: found[k].value)
     which = f"problem {k + 1} of {len(found)}" if len(found) > 1 else ""
@@ -92,13 +92,13 @@ def held(slug: str, title: str, claim: str, source: str, catches: tuple[F, ...],
 
 
 def wavy(M: int, seed: int) -> Array:
-    """A periodic rough gap (m) on a unit square."""
+    """Return a periodic rough gap (m) on a unit square."""
     heights = waves(M, seed, longest=2, shortest=7)
     return np.asarray(0.01 * (heights.max() - heights))
 
 
 def sliding(direction: float, sign: float = 1.0) -> Coupling:
-    """Friction by beta alone."""
+    """Return friction by beta alone."""
     return Coupling(0.0, 0.5, sign * COMPLIANCE, direction)
 
 

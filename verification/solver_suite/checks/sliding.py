@@ -49,7 +49,8 @@ IN_PERIODS = (F.APERIODIC_FOR_PERIODIC, F.TAU_BESIDE, F.TAU_ALONG_X, F.SIGN_OF_C
 
 
 def centroid(pressed: Pressed, x: Array) -> float:
-    """Pressure-weighted mean of ``x`` (m). Raises ValueError where there is no load to carry it."""
+    """Return the pressure-weighted mean of ``x`` (m). Raises ValueError where there is no load to carry
+    it."""
     if not pressed.load > 0:
         raise ValueError(f"the pressures carry {pressed.load:.3g} N: no centroid")
     return float(np.sum(pressed.pressure * x) / pressed.pressure.sum())
@@ -64,7 +65,8 @@ def _trailing_shift(entrant: Entrant) -> Measured:
 
 
 def coupled_hertz(entrant: Entrant, n: int, tau: float) -> tuple[Array, Array]:
-    """Pressures found and exact of a sliding state that is Hertz'; ``tau`` is a share of the peak."""
+    """Return the pressures found and exact of a sliding state that is Hertz'; ``tau`` is a share of the
+    peak."""
     side, direction = 2.6 * SPHERE.contact_radius, 2.5
     state = CoupledHertz(SPHERE, COMPLIANCE, tau=tau * SPHERE.peak_pressure, beta=0.8)
     x, y = centres(side, n)

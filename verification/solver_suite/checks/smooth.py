@@ -27,23 +27,23 @@ Fields = tuple[Array, Array]
 
 
 def relative_l2(found: Array, exact: Array) -> float:
-    """Euclidean norm of the difference over that of the exact array."""
+    """Return the Euclidean norm of the difference over that of the exact array."""
     return float(np.linalg.norm(found - exact) / np.linalg.norm(exact))
 
 
 def apart(found: Array, exact: Array) -> Measured:
-    """`relative_l2` as a verdict's number, with a note on where it comes from."""
+    """Return `relative_l2` as a verdict's number, with a note on where it comes from."""
     return Measured(relative_l2(found, exact), unit="relative L2", note=difference(found, exact))
 
 
 def sphere(side: float, n: int) -> Array:
-    """Gap of `SPHERE` (m)."""
+    """Return the gap of `SPHERE` (m)."""
     x, y = centres(side, n)
     return np.asarray((x**2 + y**2) / (2 * SPHERE.radius))
 
 
 def hertz(entrant: Entrant, n: int) -> Fields:
-    """Pressures of `SPHERE` under its load."""
+    """Return the pressures of `SPHERE` under its load."""
     pressed = entrant.press(sphere(SIDE, n), SIDE, load=1.0)
     return pressed.pressure, SPHERE.pressure(np.hypot(*centres(SIDE, n)))
 
@@ -54,7 +54,7 @@ def load_at_approach(entrant: Entrant, n: int) -> float:
 
 
 def off_centre(entrant: Entrant, n: int, x0: float, y0: float) -> Fields:
-    """Pressures of `SPHERE` with its tip off the middle, by shares of the side."""
+    """Return the pressures of `SPHERE` with its tip off the middle, by shares of the side."""
     side = 3.2 * SPHERE.contact_radius
     x, y = centres(side, n)
     x, y = x - x0 * side, y - y0 * side
@@ -63,7 +63,7 @@ def off_centre(entrant: Entrant, n: int, x0: float, y0: float) -> Fields:
 
 
 def ellipse(entrant: Entrant, n: int) -> Fields:
-    """Pressures of `ELLIPSE`."""
+    """Return the pressures of `ELLIPSE`."""
     side = WIDE * ELLIPSE.semi_axes[0]
     x, y = centres(side, n)
     pressed = entrant.press(ELLIPSE.curvature_x / 2 * x**2 + ELLIPSE.curvature_y / 2 * y**2, side, load=1.0)
@@ -71,7 +71,7 @@ def ellipse(entrant: Entrant, n: int) -> Fields:
 
 
 def cone(entrant: Entrant, n: int) -> Fields:
-    """Pressures of `CONE`."""
+    """Return the pressures of `CONE`."""
     side = WIDE * CONE.contact_radius
     r = np.hypot(*centres(side, n))
     return entrant.press(CONE.slope * r, side, load=1.0).pressure, CONE.pressure(r)
@@ -103,7 +103,7 @@ def _load_doubling(entrant: Entrant) -> Measured:
 
 
 def _punch(entrant: Entrant, inside: Mask, side: float) -> Pressed:
-    """A flat punch at an approach of 1 mm; the elements outside it stand off by 1 m."""
+    """Return a flat punch at an approach of 1 mm; the elements outside it stand off by 1 m."""
     return entrant.press(np.where(inside, 0.0, 1.0), side, approach=1e-3)
 
 

@@ -150,19 +150,19 @@ def _table(entries: Iterable[Mapping[str, Any]]) -> str:
 
 
 def checksums(folder: Path) -> dict[str, str]:
-    """SHA-256 of every file below a folder but the sums themselves and the citation, by name."""
+    """Return the SHA-256 of every file below a folder but the sums themselves and the citation, by name."""
     paths = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
     listed = (name for name in paths if name not in (SUMS, CITATION))
     return {name: hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in listed}
 
 
 def version_of(folder: Path) -> str:
-    """The data's version: ``sha256:`` and the SHA-256 of its file of checksums."""
+    """Return the data's version: ``sha256:`` and the SHA-256 of its file of checksums."""
     return "sha256:" + hashlib.sha256((folder / SUMS).read_bytes()).hexdigest()
 
 
 def licence() -> str:
-    """Text of the licence, of the checkout or of the installed package."""
+    """Return the text of the licence, of the checkout or of the installed package."""
     if (ROOT / "LICENSE").is_file():
         return (ROOT / "LICENSE").read_text(encoding="utf-8")
     try:
@@ -175,5 +175,5 @@ def licence() -> str:
 
 
 def _text(name: str) -> str:
-    """Text of the folder that is filled in."""
+    """Return the text of the folder that is filled in."""
     return (HERE / "texts" / name).read_text(encoding="utf-8")

@@ -46,7 +46,8 @@ class PeriodicBound(NamedTuple):
 
 
 def periodic_bound(problem: ContactProblem, solution: rf.Solution) -> PeriodicBound | None:
-    """Bounds of a solution at a periodic approach, at its active set of tau; None where none is proven."""
+    """Return the bounds of a solution at a periodic approach, at its active set of tau; None where none is
+    proven."""
     f, touch = np.asarray(solution.pressure), problem.approach_from_touch
     if touch is None or problem.approach is None or not problem.periodic or problem.hardness is not None:
         return None
@@ -93,5 +94,5 @@ class _Symbols:
 
 
 def _rounding(v: Array, touch: float) -> float:
-    """Rounding of one element's v (m)."""
+    """Return the rounding of one element's v (m)."""
     return ROUNDING * float(np.finfo(float).eps) * (math.log2(v.size) * float(np.linalg.norm(v)) + abs(touch))

@@ -26,13 +26,14 @@ NUMBERS = ("approach", "normal_force", "friction_force", "friction_coefficient",
 
 
 def scene(seed: int) -> rf.Scene:
-    """Table 1's pair with a rough flat of its own, coarse enough for dense matrices."""
+    """Return Table 1's pair with a rough flat of its own, coarse enough for dense matrices."""
     rough = rf.GaussianRoughness(rms=0.5e-6, correlation_length=300e-6, seed=seed)
     return rf.Scene(rf.Body(STEEL, rf.Sphere(RADIUS)), rf.Body(COPPER, rough), LAW, LOAD, SIDE)
 
 
 def entry(seed: int, method: Literal["dense", "fft"] = "dense") -> dict[str, Any]:
-    """Problem and answer: heights (m, upwards), pressure and traction (Pa), the mask of tau, numbers (SI).
+    """Return the problem and answer: heights (m, upwards), pressure and traction (Pa), the mask of tau,
+    numbers (SI).
 
     Row i along x, the direction of sliding of the upper body, column j along y.
     """

@@ -20,7 +20,7 @@ LINES = (1, 2, 4, 8, 16)
 
 @caught
 def against_dense(scene: rf.Scene, M: int | tuple[int, int]) -> Judged:
-    """The production solver against the dense one, whose certificate is at rounding."""
+    """Judge the production solver against the dense one, whose certificate is at rounding."""
     found = rf.solve(scene, M, tolerance=TOLERANCE)
     exact = rf.solve(scene, M, method="dense", tolerance=TOLERANCE)
     if exact.status not in GOOD:
@@ -30,7 +30,7 @@ def against_dense(scene: rf.Scene, M: int | tuple[int, int]) -> Judged:
 
 @caught
 def against_hertz(M: int) -> Judged:
-    """A smooth ball, frictionless: peak and approach within 2 (spacing / a)^2, the elements' cost."""
+    """Judge a smooth ball, frictionless: peak and approach within 2 (spacing / a)^2, the elements' cost."""
     scene = replace(pressed(rms=None), friction=rf.Friction())
     found = rf.solve(scene, M, oblique=False)
     exact = hertz.Sphere(scene.load, 0.14, scene.materials.reduced_modulus)
@@ -42,7 +42,7 @@ def against_hertz(M: int) -> Judged:
 
 
 def ridge(M: int, across: int) -> rf.Scene:
-    """A parabolic ridge along x that touches ``across`` elements or so of M."""
+    """Return a parabolic ridge along x that touches ``across`` elements or so of M."""
     y = (np.arange(M) + 0.5) / M - 0.5
     z = -1e-6 * np.outer(np.ones(M), (y * M / across) ** 2)
     flat = pressed(upper=STEEL, lower=POLYMER, radius=None, rms=None, side=1e-3, load=1.0, direction=0.7)
@@ -50,7 +50,8 @@ def ridge(M: int, across: int) -> rf.Scene:
 
 
 def grids() -> Iterator[Extreme]:
-    """Tiny grids by the oracle, primes by the dense solver, large ones by Hertz, ridges of any aspect."""
+    """Yield tiny grids by the oracle, primes by the dense solver, large ones by Hertz, ridges of any
+    aspect."""
     scene = pressed(lower=POLYMER, load=30.0, direction=0.7)
     flat = replace(scene, upper=rf.Body(STEEL, rf.Flat()), periodic=True)
     scenes = {"half-space": scene, "periodic": flat}

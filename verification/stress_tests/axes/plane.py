@@ -60,7 +60,7 @@ def wedge_at(gamma: float, r: float) -> Judged:
 
 
 def _limits(gamma: float, theta: float, r: float) -> Array:
-    """r -> 0: -1 all round. r -> infinity: the resultant's radial field (Michell 1900)."""
+    """Return the limits. r -> 0: -1 all round. r -> infinity: the resultant's radial field (Michell 1900)."""
     if r < 1:
         return np.array([-1.0, -1.0, 0.0])
     with mp.workdps(40):  # doubles leave 8 digits of the opening of the narrowest wedge
