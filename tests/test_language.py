@@ -172,9 +172,11 @@ def test_sentences_and_paragraphs_are_short(name: str) -> None:
 
 
 def test_pages_keep_within_their_words() -> None:
-    """Words of README, CONTRIBUTING and docs/*.md, with tables and headings, without blocks of code and output."""
+    """Words of README, CONTRIBUTING and docs/*.md with tables and headings, without code and output."""
     files = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")]
-    texts = [re.sub(r"^(```+).*?^\1$", "", path.read_text(encoding="utf-8"), flags=re.M | re.S) for path in files]
+    texts = [
+        re.sub(r"^(```+).*?^\1$", "", path.read_text(encoding="utf-8"), flags=re.M | re.S) for path in files
+    ]
     assert sum(len(text.split()) for text in texts) <= 21_000
 
 

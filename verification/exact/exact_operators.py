@@ -24,7 +24,7 @@ Exact = Any
 
 @cache
 def normal(M: int, periodic: bool) -> Exact:
-    """``I[1/rho]`` between all pairs of unit elements, ``(M^2, M^2)``; periodic: without mean."""
+    """Return ``I[1/rho]`` between all pairs of unit elements, ``(M^2, M^2)``; periodic: without mean."""
     if periodic:
         return _from_modes(M, "normal")
     return _pairs(M, lambda i, j: kernel_reference.normal(i, j, 1.0, 1.0))
@@ -32,7 +32,7 @@ def normal(M: int, periodic: bool) -> Exact:
 
 @cache
 def tangential(M: int, periodic: bool) -> tuple[Exact, Exact]:
-    """``I[x/rho^2]`` and ``I[y/rho^2]`` between all pairs of unit elements."""
+    """Return ``I[x/rho^2]`` and ``I[y/rho^2]`` between all pairs of unit elements."""
     if periodic:
         return _from_modes(M, "x"), _from_modes(M, "y")
     return (
@@ -72,7 +72,8 @@ def _mode(p: int, r: int, turn: tuple[Exact, Exact], M: int, what: str) -> Exact
 
 
 def difference(M: int, axis: int, periodic: bool) -> Exact:
-    """Matrix of the central differences per element along an axis, one-sided at the border or wrapped."""
+    """Return the matrix of the central differences per element along an axis, one-sided at the border or
+    wrapped."""
     matrix = np.full((M * M, M * M), mp.mpf(0), dtype=object)
     for i, j in np.ndindex(M, M):
         k = (i, j)[axis]

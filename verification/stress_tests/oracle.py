@@ -25,11 +25,11 @@ from refimpl.grid import Array, Mask
 from verification.exact import exact_operators as operators
 from verification.exact.exact_operators import DIGITS, Exact
 
-STEPS, REFINEMENTS = 60, 20  # limits of Newton's steps in doubles, and in digits
+STEPS, REFINEMENTS = 60, 20  # at most: steps of Newton in doubles, and in digits
 CLOSE, SETTLED = 1e-8, 1e-20  # largest last step: relative to the state; in digits, below a double's
 TIE = 1e-26  # share of the maximum pressure or gap: signs nearer to zero are ties
 TINY = 1e-60  # complex step
-FIRST, RATIO, SOLVES = 1e-3, 10**0.5, 60  # of a continuation: first factor, largest ratio, limit
+FIRST, RATIO, SOLVES = 1e-3, 10**0.5, 60  # continuation: first factor, largest ratio, limit
 
 
 class NotSettled(ArithmeticError):
@@ -91,7 +91,8 @@ class Oracle:
         self.doubles = {name: values.astype(float) for name, values in self.exact.items()}
 
     def solve(self, pressure: Array, support: Mask, tangents: tuple[Array, Array] | None = None) -> Exactly:
-        """The exact state that belongs to a returned pressure and to tau's active set, both ``(M, M)``.
+        """Return the exact state that belongs to a returned pressure and to tau's active set, both ``(M,
+        M)``.
 
         Slopes are sought from the returned ``tangents`` on, or from those that the pressure leaves on flats.
         """
@@ -101,7 +102,8 @@ class Oracle:
         return self._refined(guess, support.ravel())
 
     def continued(self) -> Exactly:
-        """The exact state under a load by continuation in beta where that is above 1, else in the load."""
+        """Return the exact state under a load by continuation in beta where that is above 1, else in the
+        load."""
         load, beta = self.scene.load, self.scene.friction.beta
         known, ratio = min(1.0, 1 / beta) if beta > 1 else FIRST, RATIO
         by_beta = beta > 1

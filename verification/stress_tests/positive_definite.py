@@ -41,7 +41,8 @@ from verification.exact.exact_operators import normal, tangential
 
 
 def symmetric_part(M: int, beta: float, ratio: float, slope: float = 0.0) -> Array:
-    """Eigenvalues of the symmetric part of ``a (1 - beta t) + ratio beta c`` on M x M unit elements.
+    """Return the eigenvalues of the symmetric part of ``a (1 - beta t) + ratio beta c`` on M x M unit
+    elements.
 
     ``ratio`` is the shear over the normal compliance; ``slope`` is t = tan theta_x of alternate rows of
     elements, of either sign, as the slope correction sees it (0 without it). Entries are the exact ones,
@@ -54,7 +55,7 @@ def symmetric_part(M: int, beta: float, ratio: float, slope: float = 0.0) -> Arr
 
 
 def least_symbol(M: int = 64) -> float:
-    """The symbol's least value, at p = q = pi: the limit of the least eigenvalue on growing grids.
+    """Return the symbol's least value, at p = q = pi: the limit of the least eigenvalue on growing grids.
 
     Sums the coefficients out to M elements with alternating signs, whose tail is below the last term.
     """
