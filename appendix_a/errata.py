@@ -48,7 +48,8 @@ SMALL_SLOPE = 0.01  # degrees
 
 
 def _missing_load(sign: int) -> float:
-    """Relative difference of the force across the arc r = 7 a from the load 2 a cos(gamma), by (A4)-(A6)."""
+    """Return the relative difference of the force across the arc r = 7 a from the load 2 a cos(gamma), by
+    (A4)-(A6)."""
     alpha = np.pi / 2 - GAMMA
     nodes, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
     force = 0.0
@@ -61,7 +62,7 @@ def _missing_load(sign: int) -> float:
 
 
 def _kernel_left(literal: bool) -> float:
-    """P(50) / P(1) of (A7) at gamma = 0.3, theta = 0.5: it must fall off for (A4) to converge."""
+    """Return P(50) / P(1) of (A7) at gamma = 0.3, theta = 0.5: it must fall off for (A4) to converge."""
 
     if literal:
         return wedge_printed.literal_p(50.0, 0.5, GAMMA) / wedge_printed.literal_p(1.0, 0.5, GAMMA)
@@ -70,7 +71,8 @@ def _kernel_left(literal: bool) -> float:
 
 
 def _flat_residual(theta: Theta) -> float:
-    """Largest net pseudo traction on a flat boundary, where none is needed, in units of the pressure."""
+    """Return the largest net pseudo traction on a flat boundary, where none is needed, in units of the
+    pressure."""
     flat = Sinusoid(0.0, 100.0, 0.0)
     x = np.array([-2.0, -0.9, -0.5, 0.0, 0.5, 0.9, 2.0])
     along, down = pseudo_tractions(x, flat, theta)
@@ -79,13 +81,15 @@ def _flat_residual(theta: Theta) -> float:
 
 
 def _load_left() -> float:
-    """Pseudo traction under a flat strip's centre by (A3): it must vanish, there is nothing to compensate."""
+    """Return the pseudo traction under a flat strip's centre by (A3): it must vanish, there is nothing to
+    compensate."""
     along, down = pseudo_tractions(0.0, Sinusoid(0.0, 100.0, 0.0), Theta.NORMAL)
     return float(np.hypot(along, down))
 
 
 def _strain_left(added: float) -> float:
-    """Relative error of the first-order change at x = a/2 on a crest; ``added`` = 1 includes the strain."""
+    """Return the relative error of the first-order change at x = a/2 on a crest; ``added`` = 1 includes the
+    strain."""
     nu, x = 0.3, 0.5
     profile = Sinusoid(SMALL_SLOPE, 20.0, 0.0)
     wavy, flat = printed(SMALL_SLOPE, 20.0, nu, offsets=[x])
@@ -95,7 +99,7 @@ def _strain_left(added: float) -> float:
 
 
 def _branch(principal: bool) -> float:
-    """|sigma_y + p| at the middle of the loaded boundary."""
+    """Return |sigma_y + p| at the middle of the loaded boundary."""
     if not principal:
         return float(abs(field.stresses(0.0, 0.0)[1] + 1))
     first, second = np.arctan(0.0 / (0 - 1)), np.arctan(0.0 / (0 + 1))

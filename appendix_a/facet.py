@@ -57,7 +57,8 @@ def facet_coefficient(tan_x: Array, tan_y: Array, nu: float, offset: tuple[int, 
 
 
 def _own(tan_x: Array, tan_y: Array, nu: float) -> Array:
-    """At the loaded element's own centre: the odd part cancels; 1/rho in polar coordinates."""
+    """Return the value at the loaded element's own centre: the odd part cancels; 1/rho in polar
+    coordinates."""
     nodes, weights = np.polynomial.legendre.leggauss(NEAR)
     width = 2 * pi / OCTANTS
     angles = (width * (np.arange(OCTANTS)[:, None] + 0.5 * (nodes + 1))).ravel()
@@ -71,7 +72,7 @@ def _own(tan_x: Array, tan_y: Array, nu: float) -> Array:
 
 @cache
 def _lever_arms(offset: tuple[int, int]) -> tuple[Array, Array, Array]:
-    """From Gauss points of the loaded square to the field point: dx, dy (m,), and weights."""
+    """Return offsets from Gauss points of the loaded square to the field point: dx, dy (m,), and weights."""
     nodes, weights = np.polynomial.legendre.leggauss(NEAR if max(map(abs, offset)) == 1 else FAR)
     x, y = np.meshgrid(nodes, nodes, indexing="ij")
     area = np.outer(weights, weights)

@@ -81,6 +81,6 @@ def slope_of_error(offset: float, nu: float, error: float = 0.02) -> float:
 
 
 def _strip_profile(x: Array, a: float) -> Array:
-    """Integral of ln|x - t| - ln|t| over |t| < a."""
+    """Return the integral of ln|x - t| - ln|t| over |t| < a."""
     profile: Array = xlogy(x + a, np.abs(x + a) / a) - xlogy(x - a, np.abs(x - a) / a)
     return profile

@@ -81,7 +81,8 @@ def base_tractions(x: ArrayLike, gamma: float, half_base: float) -> tuple[Real, 
 
 
 def _local(x: Real, gamma: float, nu: float, half_base: float) -> Real:
-    """The infinite wedge's displacement of the face at x >= 0 less that of the base below it; 0 beyond it."""
+    """Return the infinite wedge's displacement of the face at x >= 0 less that of the base below it; 0 beyond
+    it."""
     x = np.clip(x, APEX, half_base)
     depth, face = half_base * np.tan(gamma), np.pi / 2 - gamma
     on_face, _ = wedge.displacements(x / np.cos(gamma), np.full_like(x, face), gamma, nu)
@@ -91,7 +92,8 @@ def _local(x: Real, gamma: float, nu: float, half_base: float) -> Real:
 
 
 def _half_space(x: float, gamma: float, nu: float, half_base: float) -> float:
-    """Displacement of the half-space at x >= 0 under the base tractions, up to the datum's constant.
+    """Return the displacement of the half-space at x >= 0 under the base tractions, up to the datum's
+    constant.
 
     The pressure is even and the shear odd in s, so both sums run over 0 < s < half_base.
     """

@@ -51,7 +51,8 @@ def free_memory() -> int:
 
 
 def _left_in_groups() -> Iterator[int]:
-    """Bytes that the limit of each group above this process leaves; droppable file pages count as free."""
+    """Yield the bytes that the limit of each group above this process leaves; droppable file pages count as
+    free."""
     for folder in _groups():
         for limit, usage in _USAGE.items():
             with suppress(OSError, ValueError):  # "max" is no limit
@@ -60,7 +61,8 @@ def _left_in_groups() -> Iterator[int]:
 
 
 def _groups() -> Iterator[Path]:
-    """The folders of this process's memory group and of those above it; in a container, its own root."""
+    """Yield the folders of this process's memory group and of those above it; in a container, its own
+    root."""
     with suppress(OSError, ValueError):
         for line in _text(PROC / "self/cgroup").splitlines():
             _, controllers, place = line.split(":", 2)
@@ -84,7 +86,8 @@ def _text(path: Path) -> str:
 
 
 def _left_of_limits() -> Iterator[int]:
-    """Bytes that the limits of the address space and of the data segment leave, where psutil has them."""
+    """Yield the bytes that the limits of the address space and of the data segment leave, where psutil has
+    them."""
     process = psutil.Process()
     if hasattr(process, "rlimit"):
         used = process.memory_info()

@@ -141,7 +141,8 @@ HERTZ = {"contact radius a0": ("A", 0.5), "peak pressure": ("p_max", 1.0)}  # nu
 
 
 def _smooth(quantity: str, label: str, cases: Cases) -> tuple[float, float | None]:
-    """Relative effects of the inputs and of R = 0.143 m on a number of smooth bodies, or on a slope."""
+    """Return the relative effects of the inputs and of R = 0.143 m on a number of smooth bodies, or on a
+    slope."""
     if quantity == "rms slope":
         return SLOPES[label], None
     if label not in HERTZ or INPUTS not in cases:
@@ -152,7 +153,8 @@ def _smooth(quantity: str, label: str, cases: Cases) -> tuple[float, float | Non
 
 
 def _effects(inputs: Mapping[str, Any], name: str, sigma: float) -> tuple[float, float | None]:
-    """Relative effects of the inputs and of R = 0.143 m in a roughness's column; none if not recorded."""
+    """Return the relative effects of the inputs and of R = 0.143 m in a roughness's column; none if not
+    recorded."""
     roughness = inputs.get("sigma_e (um)", ())
     columns = [k for k, s in enumerate(roughness) if math.isclose(s, sigma, abs_tol=1e-3)]
     if not columns:
@@ -166,7 +168,7 @@ def _of_inputs(found: Number, u: float, change: float | None) -> Number:
 
 
 def _sampling(quantity: str) -> tuple[float, float]:
-    """Relative standard deviations of our number and of the paper's over random surfaces."""
+    """Return the relative standard deviations of our number and of the paper's over random surfaces."""
     if quantity.startswith("scatter"):
         return (1 / math.sqrt(2 * (SURFACES - 1)),) * 2
     one = ONE_SURFACE.get(quantity, 0.0)
@@ -209,7 +211,7 @@ def column_of(sigma_e: float) -> str:
 
 
 def _half_digit(value: float) -> float:
-    """Half a unit of Table 3's last digit: printed are tenths, with two decimals below 10, else one.
+    """Return half a unit of Table 3's last digit: printed are tenths, with two decimals below 10, else one.
 
     >>> _half_digit(0.164), _half_digit(1.91)
     (0.0005, 0.005)

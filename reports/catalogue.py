@@ -20,7 +20,8 @@ GROUPS = ("self", "in line", "across")
 
 
 def _error_map(canvas: Canvas, data: Data) -> None:
-    """Error over the slope: the element itself by place, and the next ones on a flank; dashed: the pair."""
+    """Draw the error over the slope: the element itself by place, and the next ones on a flank; dashed: the
+    pair."""
     own, following = canvas.subplots(2, 1, sharex=True)
     lines = [(own, place, "self", place) for place in PLACES]
     lines += [(following, "flank", key, label) for key, label in NEXT.items()]
@@ -68,7 +69,7 @@ def _reach(canvas: Canvas, data: Data) -> None:
 
 
 def _readings(canvas: Canvas, data: Data) -> None:
-    """Largest error by body, coefficient and reading of the slope, beside 2 %."""
+    """Draw the largest error by body, coefficient and reading of the slope, beside 2 %."""
     names = [name for name in data if name.endswith(GROUPS)]
     axes = canvas.add_subplot()
     for k, reading in enumerate(data[READINGS]):
@@ -285,7 +286,8 @@ TIMED = ("paper", "production", "NNLS", "L-BFGS-B")
 
 
 def _table2_seconds(data: Data) -> Data:
-    """Seconds of each method over the grids of the paper's scheme; none where a method ends earlier."""
+    """Return the seconds of each method over the grids of the paper's scheme; none where a method ends
+    earlier."""
     seconds = {name: dict(zip(data[f"{name}: M"], data[f"{name}: s"], strict=True)) for name in TIMED}
     grids = data["paper: M"]
     return {"M": grids, **{name: [by_grid.get(M) for M in grids] for name, by_grid in seconds.items()}}

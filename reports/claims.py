@@ -133,8 +133,8 @@ def _judged(
 def _verdict(
     claim: Claim, cases: Sequence[Case], by_name: Mapping[str, Case], groups: Mapping[str, Sequence[Number]]
 ) -> str:
-    """The least favourable of the claim's own verdict and those that its numbers, its comparisons and its
-    cases give; none without evidence that passed.
+    """Return the least favourable of the claim's own verdict and those that its numbers, its comparisons and
+    its cases give; none without evidence that passed.
     """
     if claim.evidence and (not cases or worst(list(cases)) != "pass"):
         return NOT_ESTABLISHED

@@ -97,7 +97,7 @@ def svg(figure: Figure, data: Data, name: str = "figure", caption: str | None = 
 
 
 def _in_symbols(text: str) -> str:
-    """The text with Greek letters and units as symbols, unless it is the name of a case or a fault."""
+    """Return the text with Greek letters and units as symbols, unless it is the name of a case or a fault."""
     return text if _NAME.fullmatch(text) else symbols(text)
 
 
@@ -117,7 +117,7 @@ def words(canvas: Canvas, caption: str) -> str:
 
 
 def _plain(text: str) -> str:
-    """Text without the marks of mathematics."""
+    """Return the text without the marks of mathematics."""
     return re.sub(r"[$\\{}]", "", text).strip()
 
 
@@ -213,7 +213,8 @@ def _scale(axes: Axes, log: str) -> None:
 
 
 def _few_ticks(axes: Axes, x: np.ndarray[Any, np.dtype[np.float64]]) -> None:
-    """Ticks at the points of a logarithmic axis within two decades, where minor ones would be labelled.
+    """Set the ticks at the points of a logarithmic axis within two decades, where minor ones would be
+    labelled.
 
     Those too close to the last one labelled have no tick.
     """
@@ -228,5 +229,5 @@ def _few_ticks(axes: Axes, x: np.ndarray[Any, np.dtype[np.float64]]) -> None:
 
 
 def _numbers(series: Sequence[Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Floats with NaN for what was recorded as not available."""
+    """Return the floats with NaN for what was recorded as not available."""
     return np.array(series, dtype=float)

@@ -198,7 +198,7 @@ def departures(
 
 
 def _of_case(case: Case, row: Mapping[str, Any] | None) -> Iterator[tuple[str, str]]:
-    """Kinds of departure of a case, each with the case's id and both values."""
+    """Yield the kinds of departure of a case, each with the case's id and both values."""
     id = case["id"]
     if row is None:
         yield "cases that this version does not have", id

@@ -84,7 +84,7 @@ def as_csv(figure: Figure, data: Data) -> str:
 
 
 def _six(value: Any) -> Any:
-    """Six digits of a float, as many as a result is recorded with for figures."""
+    """Return the six digits of a float, as many as a result is recorded with for figures."""
     return f"{value:.6g}" if isinstance(value, float) else value
 
 

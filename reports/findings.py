@@ -93,7 +93,7 @@ def _step_by_step(data: Any, steps: list[str]) -> Any:
 
 
 def _readings(data: Mapping[str, Any], *, below: bool) -> int | None:
-    """Number of readings of "less than 2%", or share that holds (per cent)."""
+    """Return the number of readings of "less than 2%", or share that holds (per cent)."""
     values = [
         v for name, row in data.items() if name.endswith(READINGS) and isinstance(row, list) for v in row
     ]

@@ -97,7 +97,7 @@ def _agreeing(numbers: Sequence[Number]) -> tuple[int, int]:
 
 
 def _by_inputs(numbers: Sequence[Number]) -> tuple[int, int]:
-    """Numbers within u by inputs; of those the ones whose E R = 0.143 m more than halves."""
+    """Return the numbers within u by inputs; of those the ones whose E R = 0.143 m more than halves."""
     found = [n for n in numbers if n.by_inputs]
     remains = [abs((n.rounded_radius or n.computed) - n.printed) for n in found]
     halved = [value < abs(n.difference) / 2 for value, n in zip(remains, found, strict=True)]
@@ -109,7 +109,8 @@ EXPLAINED = ("rms slope", "ψ(0.5 µm), Eq. (12)")
 
 
 def _worst(numbers: Sequence[Number], count: int = 3) -> list[Number]:
-    """Of the quantities with a number beyond u the worst, each by its largest ratio to the printed number."""
+    """Return the worst of the quantities with a number beyond u, each by its largest ratio to the printed
+    number."""
 
     def distance(n: Number) -> float:
         return abs(math.log(n.ratio))
@@ -123,7 +124,7 @@ def _worst(numbers: Sequence[Number], count: int = 3) -> list[Number]:
 
 
 def _hertz(case: Case) -> str:
-    """Computed and exact number, and the relative error; empty for another case."""
+    """Return the computed and exact number, and the relative error; empty for another case."""
     name = HERTZ.get(case["id"])
     if name is None or case["value"] is None or case["reference"] is None:
         return ""
@@ -148,7 +149,7 @@ MISSED = 0.01
 
 
 def _coverage(studies: Mapping[str, Any]) -> list[str]:
-    """Coverage of error bars over all classes of random scenes, and the classes that bars miss."""
+    """Return the coverage of error bars over all classes of random scenes, and the classes that bars miss."""
     table = [
         row for row in studies.get("coverage_corrected", {}).get("table", ()) if row["number"] in COVERED
     ]
@@ -174,5 +175,5 @@ def _coverage(studies: Mapping[str, Any]) -> list[str]:
 
 
 def _trust(studies: Mapping[str, Any]) -> list[str]:
-    """One sentence a study of the verification itself."""
+    """Return one sentence per study of the verification itself."""
     return [sentence(studies["extremes"])] if "extremes" in studies else []

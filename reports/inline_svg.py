@@ -70,7 +70,7 @@ class StyleSheet:
 
 
 def _short(match: re.Match[str]) -> str:
-    """A tenth of a point, 35 micrometres on paper."""
+    """Round to a tenth of a point, 35 micrometres on paper."""
     short = f"{float(match[0]):.1f}".removesuffix(".0")
     return "0" if short == "-0" else short
 

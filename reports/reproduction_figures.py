@@ -22,7 +22,7 @@ def _values(data: Data, name: str) -> np.ndarray[tuple[int, ...], np.dtype[np.fl
 
 
 def _table3(canvas: Canvas, data: Data) -> None:
-    """Ours over printed, mesh by mesh, with u."""
+    """Draw ours over printed, mesh by mesh, with u."""
     axes = canvas.add_subplot()
     mesh, rms = _values(data, "mesh"), _values(data, "sigma_e (um)")
     ratio = _values(data, "ours") / _values(data, "printed")
@@ -41,7 +41,7 @@ def _table3(canvas: Canvas, data: Data) -> None:
 
 
 def _fig5_differences(data: Data) -> dict[str, list[float]]:
-    """Differences from the curves with which stresses nearly coincide."""
+    """Return the differences from the curves with which stresses nearly coincide."""
     return {
         f"{ours}{suffix} less {theirs} (MPa)": list(
             _values(data, f"{ours}{suffix} (MPa)") - _values(data, f"{theirs} (MPa)")
@@ -90,7 +90,7 @@ def _fig6d(canvas: Canvas, data: Data) -> None:
 
 
 def _fig7_difference(data: Data) -> dict[str, list[float]]:
-    """The change by friction, which is thinner than a line."""
+    """Return the change by friction, which is thinner than a line."""
     less = _values(data, "flat deformed (um)") - _values(data, "flat deformed, frictionless (um)")
     return {"with less without friction (nm)": list(1e3 * less)}
 
@@ -162,7 +162,7 @@ def _fig10(canvas: Canvas, data: Data) -> None:
 
 
 def _fig11_gaussians(data: Data) -> dict[str, list[float]]:
-    """Gaussian densities of the same rms."""
+    """Return the Gaussian densities of the same rms."""
     found = {}
     for panel in FIG11:
         x, density = _values(data, f"{panel}: value"), _values(data, f"{panel}: density")

@@ -41,7 +41,7 @@ def _texts(value: object) -> bool:
 
 
 def _id(value: object) -> bool:
-    """True if the value is "subject/slug" without blanks."""
+    """Return True if the value is "subject/slug" without blanks."""
     return isinstance(value, str) and all(value.partition("/")) and len(value.split()) == 1
 
 
@@ -54,7 +54,7 @@ def _one_of(*values: str) -> Kind:
 
 
 def _command(value: object) -> bool:
-    """True if the value is a text that a shell would split into words."""
+    """Return True if the value is a text that a shell would split into words."""
     try:
         return isinstance(value, str) and bool(shlex.split(value))
     except ValueError:  # an open quote
@@ -62,7 +62,7 @@ def _command(value: object) -> bool:
 
 
 def _labels(value: object) -> bool:
-    """True if the value is a table of texts, numbers and None."""
+    """Return True if the value is a table of texts, numbers and None."""
     return isinstance(value, Mapping) and all(
         item is None or _text(item) or _number(item) for item in value.values()
     )
@@ -175,7 +175,8 @@ def _check_verdict(case: Case) -> None:
 
 
 def _error_follows(case: Case) -> bool:
-    """True if the error is that of value, reference and metric, and the reference certain enough to judge."""
+    """Return True if the error is that of value, reference and metric, and the reference certain enough to
+    judge."""
     value, reference, error, metric = (case[name] for name in ("value", "reference", "error", "metric"))
     if metric in ("at_most", "at_least"):
         return reference is None and bool(error == value) and (metric == "at_least" or value >= 0)
@@ -288,7 +289,7 @@ def _kind(old: Case | None, new: Case | None) -> str | None:
 
 
 def _unnoticed(case: Mapping[str, Any]) -> float:
-    """Largest change of the value that is not listed (unit of the value)."""
+    """Return the largest change of the value that is not listed (unit of the value)."""
     scale = abs(case["reference"] or 0.0) if case["metric"] == "relative" else 1.0
     uncertainty: float = case["reference_uncertainty"] or 0.0
     return max(uncertainty, _SHARE * (case["tolerance"] or 0.0) * scale)

@@ -171,6 +171,13 @@ def test_sentences_and_paragraphs_are_short(name: str) -> None:
     assert len(LONG) <= 40
 
 
+def test_pages_keep_within_their_words() -> None:
+    """Words of README, CONTRIBUTING and docs/*.md, with tables and headings, without blocks of code and output."""
+    files = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")]
+    texts = [re.sub(r"^(```+).*?^\1$", "", path.read_text(encoding="utf-8"), flags=re.M | re.S) for path in files]
+    assert sum(len(text.split()) for text in texts) <= 21_000
+
+
 @pytest.mark.parametrize("name", PROSE)
 def test_pages_have_the_terms_of_the_glossary(name: str) -> None:
     """Prose alone: tables and blocks have names of commands, files and recorded results."""
@@ -188,11 +195,11 @@ def test_docstrings_of_functions_begin_with_an_imperative(package: str) -> None:
 
 
 def summaries(package: str) -> Iterator[tuple[str, str]]:
-    """Yield place and docstring of each public function of a package that is no case and no property."""
+    """Yield place and docstring of each function of a package that is no case and no property."""
     for path in sorted((ROOT / package).rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             text = ast.get_docstring(node) if isinstance(node, ast.FunctionDef) else None
-            if isinstance(node, ast.FunctionDef) and text and not node.name.startswith("_"):
+            if isinstance(node, ast.FunctionDef) and text:
                 marks = " ".join(ast.unparse(mark) for mark in node.decorator_list)
                 if not re.search("case|family|property|given|invariant|in_both_tiers", marks):
                     yield f"{path.relative_to(ROOT)}:{node.lineno}", text

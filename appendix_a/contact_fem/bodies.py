@@ -90,7 +90,7 @@ def wavy_surface(
 def _unit_surface(
     amplitude: float, crest: float, nu: float, plan: MeshPlan, straight: bool, harmonics: Harmonics
 ) -> Surface:
-    """The surface for E = 1 in the body's own frame."""
+    """Return the surface for E = 1 in the body's own frame."""
     reference = plan.reference()
 
     def profile(x: Array) -> Array:
@@ -121,7 +121,7 @@ def wave_height(x: Array, amplitude: float, harmonics: Harmonics = ()) -> Array:
 
 
 def _bent(reference: MeshTri, profile: Profile, depth: float) -> MeshTri2:
-    """The reference mesh on the profile, with quadratic sides; depth stretched, the base plane."""
+    """Return the reference mesh on the profile, with quadratic sides; depth stretched, the base plane."""
     curved = MeshTri2.from_mesh(reference)
     xi, eta = curved.doflocs
     x, y = xi / 2.0, eta / 2.0 + (depth - 0.5) * eta**3
@@ -129,7 +129,7 @@ def _bent(reference: MeshTri, profile: Profile, depth: float) -> MeshTri2:
 
 
 def _compliance(body: PlaneStrain, nodes: Numbers, nu: float, depth: float) -> Array:
-    """Displacements of `nodes` under unit forces on them, counted from the mean plane (E = 1)."""
+    """Return the displacements of `nodes` under unit forces on them, counted from the mean plane (E = 1)."""
     tie = _periodic_and_fixed(body, depth)
     kept = tie[np.concatenate([nodes, body.basis.N + nodes])].indices
     stiffness = condensed(csc_matrix(tie.T @ body.stiffness(nu) @ tie), kept)

@@ -117,7 +117,7 @@ def _posed(lower: Surface, upper: Surface, state: _State) -> Interface:
 
 
 def _tau_forces(interface: Interface, state: _State, tau: float) -> tuple[Array, Array]:
-    """Nodal forces of tau between the contact's ends."""
+    """Return the nodal forces of tau between the contact's ends."""
     if tau == 0.0 or state.ends is None:
         return np.zeros(len(state.lower_u)), np.zeros(len(state.upper_u))
     sampled = interface.at(interface.edges_within(state.ends))
@@ -127,7 +127,8 @@ def _tau_forces(interface: Interface, state: _State, tau: float) -> tuple[Array,
 
 
 def _updated(interface: Interface, state: _State, load: float, friction: Friction, hold: float) -> _State:
-    """Pressures, displacements and approach for the geometry that `state` left; `hold` in shortest edges."""
+    """Return the pressures, displacements and approach for the geometry that `state` left; `hold` in shortest
+    edges."""
     sampled = interface.at(interface.whole())
     hats = sampled.hats.toarray()
     on_lower, on_upper = sampled.forces(hats, friction.beta * hats)
@@ -158,7 +159,8 @@ def _updated(interface: Interface, state: _State, load: float, friction: Frictio
 def _settled(
     ends: tuple[float, float], before: tuple[float, float] | None, slack: float
 ) -> tuple[float, float]:
-    """The ends between which tau acts: as before if they moved by less than `slack`, which stops cycles."""
+    """Return the ends between which tau acts: as before if they moved by less than `slack`, which stops
+    cycles."""
     if before is None or max(abs(a - b) for a, b in zip(ends, before, strict=True)) > slack:
         return ends
     return before
@@ -183,7 +185,7 @@ def complementary(
 
 
 def _gathered(interface: Interface, state: _State, friction: Friction, updates: int) -> Contact:
-    """Resultants and residuals from the converged pressure and geometry."""
+    """Return the resultants and residuals from the converged pressure and geometry."""
     sampled: Sampled = interface.at(interface.whole())
     f = (sampled.hats @ state.pressure)[:, None]
     on_lower, _ = sampled.forces(f, friction.beta * f)
@@ -211,7 +213,8 @@ def _gathered(interface: Interface, state: _State, friction: Friction, updates: 
 
 
 def _undeformed(surface: Surface, deformed: Array, ends: tuple[float, float]) -> tuple[float, float]:
-    """Undeformed abscissae of the surface points that deformation has taken to the abscissae `ends`."""
+    """Return the undeformed abscissae of the surface points that deformation has taken to the abscissae
+    `ends`."""
     edge, t = locate(deformed[0][surface.edges], np.array(ends))
     shape, _ = lagrange(2, t)
     left, right = np.sum(shape * surface.at[0][surface.edges[:, edge]], axis=0)

@@ -38,7 +38,8 @@ def contact_ends(
 
 
 def _end(x: Array, power: Array, nodes_per_degree: int) -> float:
-    """Zero of `power`, which falls from its peak to the right; the last loaded node if there are few."""
+    """Return the zero of `power`, which falls from its peak to the right; the last loaded node if there are
+    few."""
     share = power / power[0]
     fitted = (share > LOW) & (share < HIGH)
     last = int(np.flatnonzero(share > 0)[-1])

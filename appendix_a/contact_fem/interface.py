@@ -160,7 +160,7 @@ class Sampled:
 
 
 def _interpolation(surface: Surface, edge: Numbers, shape: Array) -> csr_matrix:
-    """(q, n) values at points from nodal values; `shape` (3, q)."""
+    """Return (q, n) values at points from nodal values; `shape` (3, q)."""
     rows = np.tile(np.arange(len(edge)), 3)
     columns = surface.edges[:, edge].ravel()
     return csr_matrix((shape.ravel(), (rows, columns)), (len(edge), surface.at.shape[1]))

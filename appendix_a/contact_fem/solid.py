@@ -83,7 +83,7 @@ def asperity(amplitude: float, crest: float, nu: float, elements: int) -> Patch:
 
 
 def _stiffness(basis: Basis, nu: float) -> csc_matrix:
-    """lambda div u div v + 2 mu eps(u) : eps(v), unknowns (u_x; u_y; u_z).
+    """Return lambda div u div v + 2 mu eps(u) : eps(v), unknowns (u_x; u_y; u_z).
 
     From six scalar forms: scikit-fem's `linear_elasticity` on an `ElementVector` is equal to rounding, and
     needs twelve times as long on triquadratic hexahedra (12.3 s against 1.0 s at five elements).
@@ -104,7 +104,7 @@ def _stiffness(basis: Basis, nu: float) -> csc_matrix:
 
 
 def _compliance(basis: Basis, place: Array, top: Numbers, nu: float) -> Array:
-    """Displacements of the nodes `top` under unit forces on them, from the mean plane."""
+    """Return the displacements of the nodes `top` under unit forces on them, from the mean plane."""
     n = basis.N
     tie = _tie(place)
     kept = tie[np.concatenate([top, n + top, 2 * n + top])]

@@ -60,7 +60,8 @@ class _Sampled:
 
 
 def _matrix(grid: tuple[int, int], place: Array, orders: tuple[int, int]) -> csr_matrix:
-    """(q, n) biquadratic interpolation at places (2, q) in element spacings; `orders`: 1 for d/dplace."""
+    """Return (q, n) biquadratic interpolation at places (2, q) in element spacings; `orders`: 1 for
+    d/dplace."""
     count = [(n - 1) // 2 for n in grid]
     element = [np.clip(np.floor(p).astype(int), 0, m - 1) for p, m in zip(place, count, strict=True)]
     one, two = (lagrange(2, p - e)[o] for p, e, o in zip(place, element, orders, strict=True))
@@ -73,7 +74,7 @@ def _matrix(grid: tuple[int, int], place: Array, orders: tuple[int, int]) -> csr
 
 
 def _hats(grid: tuple[int, int], place: Array) -> csr_matrix:
-    """(q, vertices) bilinear interpolation between element ends."""
+    """Return (q, vertices) bilinear interpolation between element ends."""
     ends = [(n - 1) // 2 + 1 for n in grid]
     cell = [np.clip(np.floor(p).astype(int), 0, m - 2) for p, m in zip(place, ends, strict=True)]
     local = [p - c for p, c in zip(place, cell, strict=True)]
@@ -89,7 +90,7 @@ def _hats(grid: tuple[int, int], place: Array) -> csr_matrix:
 
 
 def _gauss(grid: tuple[int, int]) -> tuple[Array, Array]:
-    """Places (2, q) in element spacings, and weights (q,)."""
+    """Return the places (2, q) in element spacings, and weights (q,)."""
     t, w = np.polynomial.legendre.leggauss(GAUSS)
     axes = [(np.arange((n - 1) // 2)[:, None] + (1 + t) / 2).ravel() for n in grid]
     weights = [np.tile(w / 2, (n - 1) // 2) for n in grid]
@@ -98,7 +99,8 @@ def _gauss(grid: tuple[int, int]) -> tuple[Array, Array]:
 
 
 def _located(upper: Array, at: Array, start: Array) -> Array:
-    """Places on the upper grid (3, nx, ny) whose x, y are `at` (2, q), by Newton's method from `start`."""
+    """Return the places on the upper grid (3, nx, ny) whose x, y are `at` (2, q), by Newton's method from
+    `start`."""
     grid, place = upper.shape[1:], start.copy()
     flat = upper[:2].reshape(2, -1)
     limit = [[1e-9], [1e-9]], [[(n - 1) / 2 - 1e-9] for n in grid]

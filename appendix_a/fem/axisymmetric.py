@@ -44,7 +44,7 @@ def circular_patch(r: Array, nu: float) -> Array:
 
 
 def _weighted(form: Callable[..., Any]) -> Any:
-    """Integral over the meridian plane, weighted with the radius."""
+    """Return the integral over the meridian plane, weighted with the radius."""
     return BilinearForm(lambda u, v, w: form(u, v, w.x[0]) * w.x[0])
 
 
@@ -132,7 +132,7 @@ def body_on(boundary: Boundary, half_base: float, radius: float, level: int) -> 
 def _departure(
     boundary: Boundary, half_base: float, radius: float, level: int, nu: float, offsets: Array
 ) -> Array:
-    """Rough minus flat u_z (m,) with the error both share removed; both absolute."""
+    """Return the rough minus flat u_z (m,) with the error both share removed; both absolute."""
     found = []
     for profile in (boundary, flat()):
         body = body_on(profile, half_base, radius, level)

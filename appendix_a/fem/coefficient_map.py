@@ -74,7 +74,8 @@ class CoefficientMap:
         return rest - coupling(nu) * climb
 
     def _rest(self, part: Array, where: tuple[float, float], position: float) -> Array:
-        """Splines over slope and wavenumber, then the trigonometric polynomial through the positions (m,).
+        """Return the splines over slope and wavenumber, then the trigonometric polynomial through the
+        positions (m,).
 
         An offset x sees the waves at the phase 2 pi x / wavelength: over 1 / wavelength all repeat evenly.
         """

@@ -60,7 +60,7 @@ def body_of(setup: Setup, level: int, boundary: Boundary) -> PlaneStrain:
 
 @lru_cache(maxsize=24)
 def _flat_solves(setup: Setup, level: int) -> tuple[Array, tuple[Array, Array]]:
-    """Nodal x of the flat body and its nodal u_y at both of SOLVED_NU."""
+    """Return the nodal x of the flat body and its nodal u_y at both of SOLVED_NU."""
     body = body_of(setup, level, flat())
     return body.basis.doflocs[0], (body.displacements(SOLVED_NU[0])[1], body.displacements(SOLVED_NU[1])[1])
 
@@ -113,6 +113,6 @@ def departure(setup: Setup, level: int, boundary: Boundary, offsets: Array) -> D
 
 
 def _own_strip(boundary: Boundary, x: Array, nu: float) -> Array:
-    """The flat half-plane's displacement under a strip between the boundary's own strip ends."""
+    """Return the flat half-plane's displacement under a strip between the boundary's own strip ends."""
     middle, half = (boundary.right + boundary.left) / 2, (boundary.right - boundary.left) / 2
     return pressed_strip(x - middle, nu, half)

@@ -93,7 +93,7 @@ def cap_boundary(slope_deg: float, half_base: float) -> Boundary:
 
 
 def _smooth_step(t: Array) -> Array:
-    """0 for t <= 0, 1 for t >= 1, twice continuously differentiable between."""
+    """Return 0 for t <= 0, 1 for t >= 1, twice continuously differentiable between."""
     t = np.clip(t, 0.0, 1.0)
     return t**3 * (10.0 - 15.0 * t + 6.0 * t**2)
 

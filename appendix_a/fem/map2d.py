@@ -55,7 +55,8 @@ def compute(
 
 @contextmanager
 def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """Worker processes that end with the block: after an error or an interrupt at once, whatever they do.
+    """Start worker processes that end with the block: after an error or an interrupt at once, whatever they
+    do.
 
     They ignore an interrupt themselves, which a terminal sends to all: it is this process that ends them.
     """
@@ -80,7 +81,7 @@ def _batch(job: tuple[float, float, tuple[float, ...]]) -> tuple[Array, Array, A
 
 
 def _geometry(slope: float, wavelength: float, position: float) -> tuple[Array, Array, float]:
-    """A and B (m,) beyond the first order over tan(slope)^2, and the error in percentage points."""
+    """Return a and B (m,) beyond the first order over tan(slope)^2, and the error in percentage points."""
     offsets = np.array(OFFSETS)
     levels = (0, 1, 2) if slope < STEEP else (1, 2, 3)
     solved = departures(slope, wavelength, position, offsets, levels)

@@ -41,7 +41,8 @@ GAUSS = 24  # points a side over the patch; 48 change no part by more than 1e-4 
 
 
 def _moment(distance: Array, pole: complex) -> NDArray[np.complex128]:
-    """Integral of q exp(-q d) / (q + b) over q > 0, d complex with Re d >= 0: 1/d - b exp(b d) E1(b d)."""
+    """Return the integral of q exp(-q d) / (q + b) over q > 0, d complex with Re d >= 0: 1/d - b exp(b d)
+    E1(b d)."""
     result: NDArray[np.complex128] = 1 / distance - pole * np.exp(pole * distance) * exp1(pole * distance)
     return result
 

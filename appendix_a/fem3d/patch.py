@@ -31,7 +31,7 @@ def normal_integral(x: Array, y: Array, half_x: Size = 1.0, half_y: Size = 1.0) 
 
 
 def _times_asinh(u: Array, v: Array) -> Array:
-    """u asinh(v / |u|), zero at u = 0."""
+    """Return u asinh(v / |u|), zero at u = 0."""
     return np.where(u == 0, 0.0, u * np.arcsinh(v / np.where(u == 0, 1.0, np.abs(u))))
 
 

@@ -82,7 +82,7 @@ def flamant(x: float, s: Real, along: Real, down: Real, nu: float) -> float:
 
 
 def _surface(x: float, profile: Sinusoid, theta: Theta, nu: float) -> float:
-    """Flamant superposition of the net pseudo tractions at x, up to the datum's constant."""
+    """Return the Flamant superposition of the net pseudo tractions at x, up to the datum's constant."""
     s, weights = graded_nodes([-1.0, 1.0, x, 0.0], profile.wavelength)
     along, down = pseudo_tractions(s, profile, theta)
     load_along, load_down = applied(s, profile)

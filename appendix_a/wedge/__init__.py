@@ -66,7 +66,7 @@ def displacements(
 
 
 def _checked(r: ArrayLike, theta: ArrayLike, gamma: float, half_width: float) -> tuple[Real, Real]:
-    """``r`` and ``theta`` broadcast, theta clipped to the faces."""
+    """Return ``r`` and ``theta`` broadcast, theta clipped to the faces."""
     if not 0 <= real(gamma) < np.pi / 2:
         raise InputError("gamma", gamma, "an angle of the faces to the mean plane in [0, pi/2) rad")
     if not 0 < real(half_width) < np.inf:

@@ -58,7 +58,7 @@ def _enclose(flint: Any, r: Any, theta: Any, gamma: Any) -> tuple[Any, Any, Any]
 
 
 def _tail_start(arb: Any, alpha: Any, theta: Any) -> Any:
-    """An X beyond which the tail's bound holds (checked) and is below exp(-TAIL_EXPONENT)."""
+    """Return an X beyond which the tail's bound holds (checked) and is below exp(-TAIL_EXPONENT)."""
     reach = float(alpha - abs(theta))
     end = arb(math.ceil(TAIL_EXPONENT / reach))
     # |z| <= xi + 1/2, and sinh(2 alpha xi)/(xi + 1/2) grows with xi, so the condition at X holds beyond it

@@ -60,7 +60,7 @@ def stresses(r: Any, theta: Any, gamma: Any, digits: int = 30, pairs: int = 400)
 
 
 def _residues(z: Any, r: Any, theta: Any, alpha: Any) -> list[Any]:
-    """Residues of the three integrands at a simple zero z of D: numerators over dD/dz."""
+    """Return the residues of the three integrands at a simple zero z of D: numerators over dD/dz."""
     slope = 2 * alpha * mp.cos(2 * alpha * z) + mp.sin(2 * alpha)
     plus, minus = mp.sin((1 + z) * alpha), mp.sin((1 - z) * alpha)
     even, odd = mp.cos((1 - z) * theta), mp.cos((1 + z) * theta)

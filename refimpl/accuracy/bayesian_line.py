@@ -107,7 +107,7 @@ def fit_line(values: Array, weights: Array, prior: Prior, bias: Bias | None = No
 
 
 def _bound(shares: Array, centres: Array, scales: Array, freedom: float) -> float:
-    """The bound that a mixture of Student distributions exceeds, in either direction, with 5 %."""
+    """Return the bound that a mixture of Student distributions exceeds, in either direction, with 5 %."""
     widest = float(np.max(np.abs(centres)) + np.max(scales) * scipy.special.stdtrit(freedom, 0.975))
     if len(shares) == 1:
         return widest
@@ -129,6 +129,7 @@ def _bound(shares: Array, centres: Array, scales: Array, freedom: float) -> floa
 
 @cache
 def _factors(mean: float, spread: float) -> tuple[Array, Array]:
-    """Nodes and weights of ``c``'s prior: Gauss-Hermite; nine give nine bars in ten to 1.5 % (a test)."""
+    """Return the nodes and weights of ``c``'s prior: Gauss-Hermite; nine give nine bars in ten to 1.5 % (a
+    test)."""
     nodes, weights = np.polynomial.hermite_e.hermegauss(9)
     return mean + spread * nodes, weights / weights.sum()

@@ -65,19 +65,19 @@ def verdict(error: float | None, scale: float) -> str:
 
 
 def _leading(value: float) -> int:
-    """Exponent of ten of the first digit."""
+    """Return the exponent of ten of the first digit."""
     return math.floor(math.log10(abs(value)))
 
 
 def _last_place(error: float) -> int:
-    """Exponent of ten of the last digit that a bar is printed with."""
+    """Return the exponent of ten of the last digit that a bar is printed with."""
     rounded = float(f"{error:.1e}")  # 0.00996 is 0.010
     place = _leading(rounded)
     return place - 1 if rounded < 1.95 * 10.0**place else place
 
 
 def _printed(value: float, place: int) -> str:
-    """The value rounded to ``10^place``, with its last zeros."""
+    """Return the value rounded to ``10^place``, with its last zeros."""
     shown = round(value, -place)
     if shown == 0 or _FIXED[0] <= abs(shown) < _FIXED[1]:
         return f"{shown:.{max(-place, 0)}f}"

@@ -158,7 +158,7 @@ def estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
 
 
 def _area_that_may_yield(fine: GridFeatures, peak: Estimate) -> float:
-    """The area (m^2) of elements whose pressure is within the maximum's error of the hardness."""
+    """Return the area (m^2) of elements whose pressure is within the maximum's error of the hardness."""
     if fine.hardness is None:
         return 0.0
     top = fine.numbers["max_pressure"]
@@ -201,7 +201,7 @@ def _estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
 
 
 def _sheared(grids: _Grids, name: str, area: Estimate, share: Array, unit: float) -> Estimate:
-    """A number that contains ``share`` times the contact area, and slopes times ``unit``."""
+    """Return a number that contains ``share`` times the contact area, and slopes times ``unit``."""
     values = grids.found(name) - share * grids.found("contact_area")
     rest = grids.smooth(values, BULK_FREEDOM, BULK_SCATTER, unit * rest_sizes(grids.results))
     per_area = float(share[-1])
@@ -209,7 +209,7 @@ def _sheared(grids: _Grids, name: str, area: Estimate, share: Array, unit: float
 
 
 def _peak(grids: _Grids) -> Estimate:
-    """The maximum pressure: that of the parabola, minus its bias, a share of the curvature drop.
+    """Return the maximum pressure: that of the parabola, minus its bias, a share of the curvature drop.
 
     Elements of constant pressure displace less than the waves they stand for, by the share ``q^2 h^2 / 24``:
     for a single wave that is a 24th of the drop. Band-limited pressures have no such bias.
@@ -226,13 +226,13 @@ def _peak(grids: _Grids) -> Estimate:
 
 
 def _approach(grids: _Grids) -> Estimate:
-    """The approach under a load, counted from the first contact of the surfaces themselves."""
+    """Return the approach under a load, counted from the first contact of the surfaces themselves."""
     values = grids.found("approach") + grids.each(lambda result: result.first_contact.height)
     return grids.smooth(values, APPROACH_FREEDOM, APPROACH_SCATTER, approach_sizes(grids.results))
 
 
 def _force(grids: _Grids) -> Estimate:
-    """The force at an approach, with the error of first contact by its exponent of the approach."""
+    """Return the force at an approach, with the error of first contact by its exponent of the approach."""
     load = grids.finest("normal_force")
     sizes = grids.peak_scatter(load), HERTZ_EXPONENTS["normal_force"] * load * grids.each(first_contact_share)
     scales = np.array([FORCE.scatter, 1.0])
@@ -240,7 +240,8 @@ def _force(grids: _Grids) -> Estimate:
 
 
 def _weights(size: Array, spacing: Array) -> Array:
-    """``w_k``: each grid's size of the scatter over the finest grid's, and not less than a finer grid's.
+    """Return ``w_k``: each grid's size of the scatter over the finest grid's, and not less than a finer
+    grid's.
 
     So a number that keeps changing with ever finer elements is not taken as converged. Where the finest grid
     has no scatter, the weights are those of an area.
@@ -266,7 +267,7 @@ def discretisation(results: Sequence[GridFeatures]) -> dict[str, dict[str, float
 
 
 def _area(grids: _Grids) -> Estimate:
-    """Contact area: the excess along the edge is a regressor, and the scatter is that of a count.
+    """Return the contact area: the excess along the edge is a regressor, and the scatter is that of a count.
 
     In a contact of at most four elements the faces do not locate the edge: the error bar is the whole area.
     """

@@ -61,13 +61,13 @@ def first_contact_error(features: GridFeatures) -> float:
 
 
 def _presses(features: GridFeatures, share: float) -> bool:
-    """Whether the force at that share of the approach is a normal double."""
+    """Return whether the force at that share of the approach is a normal double."""
     force: float = features.numbers["normal_force"] * share ** HERTZ_EXPONENTS["normal_force"]
     return force > sys.float_info.min
 
 
 def _at(features: GridFeatures, share: float) -> GridFeatures:
-    """The features at that share of the approach, by the exponents of Hertz contact."""
+    """Return the features at that share of the approach, by the exponents of Hertz contact."""
     numbers = {
         name: value * share ** HERTZ_EXPONENTS.get(name, 0.0) for name, value in features.numbers.items()
     }

@@ -269,7 +269,8 @@ def hidden_gap(problem: Problem, state: State) -> float:
 
 
 def _undecided(pressure: Array, grid: Grid) -> Array:
-    """Pressures of the elements of `undecided_area` and their neighbours along x and y, shape ``(5, n)``."""
+    """Return the pressures of the elements of `undecided_area` and their neighbours along x and y, shape
+    ``(5, n)``."""
     p = grid.padded(pressure[grid.window_around(pressure > 0, margin=1).slices], 1)
     five = p[1:-1, 1:-1], p[2:, 1:-1], p[:-2, 1:-1], p[1:-1, 2:], p[1:-1, :-2]
     amid = np.logical_and.reduce([field > 0 for field in five])
@@ -327,7 +328,7 @@ def slope_sampling_error(pressure: Array, slopes: Slopes, grid: Grid) -> tuple[f
 
 
 def _in_phase(load: Array) -> Array:
-    """Squares of the sums along lines, summed over the lines of each axis and diagonal.
+    """Return the squares of the sums along lines, summed over the lines of each axis and diagonal.
 
     Each counts with the square of its share of what it would be if all of the line's loads were equal.
     """

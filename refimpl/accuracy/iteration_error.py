@@ -95,13 +95,13 @@ def iteration_parts(problem: Problem, state: State) -> Uncertainty:
 
 
 def _approach_interval(state: State) -> float:
-    """Half the interval of approaches of a contact without elastic elements (m)."""
+    """Return half the interval of approaches of a contact without elastic elements (m)."""
     lowest = float(np.min(state.v, where=~state.contact, initial=math.inf))
     return lowest - state.approach
 
 
 def _peak_misfit(problem: Problem, state: State) -> float:
-    """Pressure (Pa) that closes the clearance of the highest elements, each by itself.
+    """Return the pressure (Pa) that closes the clearance of the highest elements, each by itself.
 
     Those are elements with half of the maximum pressure; at edges clearances are larger, and no peak is
     there.

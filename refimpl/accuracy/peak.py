@@ -137,7 +137,7 @@ def on_crest(field: Array, surface: Array, grid: Grid, share: float = _CREST_RIV
 
 
 def _peak(padded: Array, contact: Mask, least: float) -> Peak:
-    """The peak of all maxima of at least ``least``, in a field with a frame of `_REACH` elements.
+    """Return the peak of all maxima of at least ``least``, in a field with a frame of `_REACH` elements.
 
     ``contact`` has that frame too, without contact beyond a free border.
     """
@@ -149,7 +149,8 @@ def _peak(padded: Array, contact: Mask, least: float) -> Peak:
 
 
 def _maxima(padded: Array, frame: int, least: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Places in a field with a frame of elements: at least ``least``, and no lower than those beside."""
+    """Return the places in a field with a frame of elements: at least ``least``, and no lower than those
+    beside."""
     inner, back, ahead = slice(frame, -frame), slice(frame - 1, -frame - 1), slice(frame + 1, 1 - frame)
     field = padded[inner, inner]
     maxima: Mask = field >= least
@@ -160,14 +161,15 @@ def _maxima(padded: Array, frame: int, least: float) -> tuple[NDArray[np.intp], 
 
 
 def _lines(padded: Array, i: NDArray[np.intp], j: NDArray[np.intp], reach: int) -> Array:
-    """Elements to ``reach`` on either side of each place, along x and y: shape ``(2, 2 reach + 1, n)``."""
+    """Return the elements to ``reach`` on either side of each place, along x and y: shape ``(2, 2 reach + 1,
+    n)``."""
     near = np.arange(-reach, reach + 1)[:, None]
     return np.array([padded[i + near, j], padded[i, j + near]])
 
 
 def _parabolas(lines: Array) -> tuple[Array, Array, Array]:
-    """Height, drop and non-parabolicity of each place with ``lines`` (2, 5, n) about it, a maximum along
-    both."""
+    """Return the height, drop and non-parabolicity of each place with ``lines`` (2, 5, n) about it, a maximum
+    along both."""
     farther_back, back, top, ahead, farther = lines.swapaxes(0, 1)
     bends, rise = 2 * top - back - ahead, ahead - back
     gains = np.zeros_like(bends)

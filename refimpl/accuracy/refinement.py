@@ -210,7 +210,7 @@ def predicted_size(
 
 
 def _own_bound(features: GridFeatures, quantity: str) -> float:
-    """What a grid's own solution leaves open of a number."""
+    """Return what a grid's own solution leaves open of a number."""
     return sum(features.parts.get(quantity, {}).values())
 
 

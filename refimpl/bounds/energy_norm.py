@@ -81,7 +81,7 @@ def smallest_symbol(aspect: float) -> float:
 
 
 def _alternating(t: Array) -> Array:
-    """``S(pi, t) = sum_j (-1)^j B_j(t) = sqrt(pi)/t (1 - 2 sum_m (-1)^m erfc((m + 1/2) t))``."""
+    """Return ``S(pi, t) = sum_j (-1)^j B_j(t) = sqrt(pi)/t (1 - 2 sum_m (-1)^m erfc((m + 1/2) t))``."""
     signs = np.where(_ODD % 4 == 1, 1.0, -1.0)
     found: Array = math.sqrt(math.pi) / t * (1 - 2 * scipy.special.erfc(0.5 * np.outer(t, _ODD)) @ signs)
     return found
@@ -114,7 +114,7 @@ class EnergyNorm:
         return float(self._elasticity.symbol(np.array([smallest_symbol(grid.aspect) * grid.spacings[0]]))[0])
 
     def _periodic_floor(self, grid: Grid) -> float:
-        """``e = mean + rest``: ``(K.e)^2 >= (mean K.mean e)^2 / 2 - (K.rest)^2``."""
+        """Return ``e = mean + rest``: ``(K.e)^2 >= (mean K.mean e)^2 / 2 - (K.rest)^2``."""
         mean, n = float(self._K.mean()), self._K.size
         dx, dy = grid.spacings
         band = float(self._elasticity.symbol(np.array([2 / math.hypot(1 / dx, 1 / dy)]))[0])

@@ -145,14 +145,14 @@ class _Frozen:
         self._split()
 
     def _admit(self) -> None:
-        """The state at pressures that the bounds are for: those that stand where the gap is open are zero."""
+        """Set the state at the pressures of the bounds: those that stand where the gap is open are zero."""
         self._set(np.maximum(self.pressure, 0.0))
         spurious = (self.f > 0) & (self.w >= self.norm.diagonal * self.f)
         if spurious.any():
             self._set(np.where(spurious, 0.0, self.f))
 
     def _set(self, f: Array) -> None:
-        """Pressure, approach and w, from the displacements of this pressure."""
+        """Set the pressure, approach and w, from the displacements of this pressure."""
         problem, K = self.problem, self.K
         shear = self.traction - self.slope * self.pressure + self.slope * f
         free = np.add(*problem.displacements(self.norm.operator, f, shear, self.slopes)) + K * problem.gap
@@ -167,11 +167,11 @@ class _Frozen:
         self.noise = self.norm.rounding(f, shear) + 4 * np.finfo(float).eps * cancelled
 
     def _level(self, f: Array, free: Array) -> float:
-        """The approach under a load (m), from ``free = w + K approach``."""
+        """Return the approach under a load (m), from ``free = w + K approach``."""
         return float(np.vdot(f, free)) / self.total if self.total > 0 else 0.0
 
     def _split(self) -> None:
-        """``r`` with its dual norm, and ``f.p``."""
+        """Set ``r`` with its dual norm, and ``f.p``."""
         touching: Mask = (self.w < self.norm.diagonal * self.f) | (self.w < 0)
         z, az = self.norm.solve(self.w, touching)
         r = np.where(touching, self.w, np.minimum(self.w, az))
@@ -227,7 +227,7 @@ class _Capped(_Frozen):
         return approach_from(f, free, self.problem.cap)
 
     def _split(self) -> None:
-        """``r`` with its dual norm; p is nowhere such that it costs."""
+        """Set ``r`` with its dual norm; p is nowhere such that it costs."""
         at_cap: Mask = self.f >= self.problem.cap
         touching: Mask = self.between | np.where(at_cap, self.w > 0, self.w < 0)
         z, az = self.norm.solve(self.w, touching)
@@ -256,7 +256,7 @@ def _moved(frozen: _Frozen, x: float) -> float:
 
 
 def _translated(frozen: _Frozen, x: float, approach: float) -> Bounds:
-    """What ``||e|| <= x`` says of each reported number."""
+    """Return what ``||e|| <= x`` says of each reported number."""
     problem, norm, slopes, beta = frozen.problem, frozen.norm, frozen.slopes, frozen.slope
     dA, root = problem.grid.element_area, math.sqrt(norm.floor)
     moved = _moved(frozen, x)
@@ -294,7 +294,8 @@ def _translated(frozen: _Frozen, x: float, approach: float) -> Bounds:
 
 
 def _shear_row(frozen: _Frozen) -> float:
-    """2-norm of a row of ``beta c`` from above: an element in each corner meets every offset (m/Pa)."""
+    """Return 2-norm of a row of ``beta c`` from above: an element in each corner meets every offset
+    (m/Pa)."""
     if not frozen.coupled:
         return 0.0
     rows = []
@@ -306,7 +307,7 @@ def _shear_row(frozen: _Frozen) -> float:
 
 
 def _largest_root(quadratic: float, linear: float, constant: float) -> float:
-    """The largest x with ``quadratic x^2 <= linear x + constant``; infinite unless ``quadratic > 0``.
+    """Return the largest x with ``quadratic x^2 <= linear x + constant``; infinite unless ``quadratic > 0``.
 
     >>> _largest_root(1.0, 1.0, 2.0), _largest_root(0.0, 1.0, 2.0)
     (2.0, inf)

@@ -186,5 +186,5 @@ class Options:
 
 
 def _by(grid: Grid) -> str:
-    """Lengths of a grid, one if it is a square."""
+    """Return the lengths of a grid, one if it is a square."""
     return " x ".join(f"{length}" for length in dict.fromkeys(grid.lengths))

@@ -66,7 +66,7 @@ def refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Pr
 
 
 def _interrupted(solved: Evidence, cost: Cost) -> Solution:
-    """The last finished grid's solution of a refinement that was interrupted."""
+    """Return the last finished grid's solution of a refinement that was interrupted."""
     line = Notice("interrupted: the finest grid that was finished")
     return assemble(solved, shortfall=line, cost=cost)
 
@@ -124,7 +124,8 @@ class _Refinement:
         self.data = DataShares(cache(self._data_left), finest_by_data(self.scene))
 
     def _data_left(self, M: int) -> float:
-        """Share of the contact area that the data leave open on M elements along the longer side."""
+        """Return the share of the contact area that the data leave open on M elements along the longer
+        side."""
         return data_error(self.scene, self.scene.refined(M))
 
     def until(self, features_at: Callable[[int], GridFeatures]) -> Refinement:

@@ -96,7 +96,7 @@ def solve(
 
 
 def _solved(options: Options, progress: Progress | None) -> Solution:
-    """The solution by checked options: on one grid, or on a sequence of them."""
+    """Return the solution by checked options: on one grid, or on a sequence of them."""
     discretiser, start = Discretiser(options.scene, options.approach), options.start
     plan = options.plan(discretiser)
     if options.accuracy is not None:

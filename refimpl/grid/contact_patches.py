@@ -61,6 +61,7 @@ def patch_centres(labels: NDArray[np.intp], f: Array, along: Array, length: floa
 
 
 def _across(labels: NDArray[np.integer]) -> NDArray[np.integer]:
-    """Pairs of patches in the first and the last row that touch where these meet, shape ``(2, n)``."""
+    """Return the pairs of patches in the first and the last row that touch where these meet, shape ``(2,
+    n)``."""
     pairs = np.concatenate([[labels[0], np.roll(labels[-1], k)] for k in (-1, 0, 1)], axis=1)
     return pairs[:, pairs.all(axis=0)]

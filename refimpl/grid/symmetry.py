@@ -44,14 +44,15 @@ def symmetry_multiplicity(contact: Mask, grid: Grid) -> float:
 
 
 def _steps(contact: Mask, axis: int, periodic: bool) -> int:
-    """How often contact begins or ends along an axis."""
+    """Return how often contact begins or ends along an axis."""
     if periodic:
         return int(np.count_nonzero(contact != np.roll(contact, 1, axis)))
     return int(np.count_nonzero(np.diff(contact, axis=axis)))
 
 
 def _matched(contact: Mask, image: Mask) -> Mask:
-    """An image of a periodic contact, moved to where its rows and its columns match the contact's best."""
+    """Return an image of a periodic contact, moved to where its rows and its columns match the contact's
+    best."""
     shifts = []
     for axis in (0, 1):
         counts, found = (scipy.fft.rfft(np.count_nonzero(m, axis=1 - axis)) for m in (contact, image))

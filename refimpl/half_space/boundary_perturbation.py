@@ -124,14 +124,15 @@ class _Body:
         return change
 
     def _facets(self, f: Array, along: Array) -> tuple[Array, Vector]:
-        """Pressure and shear of the facets' tractions that the solution does not have (Pa)."""
+        """Return the pressure and shear of the facets' tractions that the solution does not have (Pa)."""
         slopes, direction = self.contact.slopes, self.contact.direction
         cos, sin = self.sign * math.cos(direction), self.sign * math.sin(direction)
         ahead, across = f * slopes.tan_x, f * slopes.tan_y
         return -along * slopes.tan_x, (cos * ahead - sin * across, sin * ahead + cos * across)
 
     def _surface_fields(self, pressed: Complex, sheared: Complex) -> tuple[Vector, Strains]:
-        """In-plane displacements (m) and strains xx, yy, xy of a half-space's surface under f and r."""
+        """Return the in-plane displacements (m) and strains xx, yy, xy of a half-space's surface under f and
+        r."""
         E, nu, ik, direction = self.modulus, self.material.nu, self.ik, self.contact.direction
         towards = self.sign * math.cos(direction), self.sign * math.sin(direction)
         over_k = np.sqrt(self.over_square)
@@ -144,13 +145,13 @@ class _Body:
         return (self._back(u[0]), self._back(u[1])), (xx, yy, xy)
 
     def _stress(self, strain: Array, other: Array, f: Array) -> Array:
-        """In-plane normal stress (Pa) along the axis of ``strain``, at the surface under f."""
+        """Return the in-plane normal stress (Pa) along the axis of ``strain``, at the surface under f."""
         nu = self.material.nu
         found: Array = self.modulus / (1 - nu**2) * (strain + nu * other) - nu / (1 - nu) * f
         return found
 
     def _inward(self, pressure: Array, shear: list[Array]) -> Array:
-        """Displacement into a half-space (m) under a pressure and a shear; no mean."""
+        """Return the displacement into a half-space (m) under a pressure and a shear; no mean."""
         normal = 2 * (1 - self.material.nu**2) / self.modulus * np.sqrt(self.over_square) * self._to(pressure)
         divergence = self.ik[0] * self._to(shear[0]) + self.ik[1] * self._to(shear[1])
         return self._back(normal - self.coupling * self.over_square * divergence)

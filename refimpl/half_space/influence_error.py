@@ -130,7 +130,8 @@ def _plane_errors(angles: Array, pair: Pair) -> list[float | None]:
 def _errors(
     slopes: Array, wavelength: float, positions: Array, lower: Material, upper: Material | None
 ) -> Array:
-    """Worst of both neighbours anywhere: ``|flat - rough| / |flat|``, bodies weighted by ``1 / E``."""
+    """Return the worst of both neighbours anywhere: ``|flat - rough| / |flat|``, bodies weighted by ``1 /
+    E``."""
     bodies = [(lower, positions)]
     if upper is not None:  # a crest of one body is a valley of the other
         bodies.append((upper, (positions + 0.5) % 1.0))
@@ -145,7 +146,7 @@ def _errors(
 
 
 def _rests(tangents: Array, wavelength: float, positions: Array) -> Array:
-    """The table's parts at all slopes and positions, ``(slopes, positions, 4)``."""
+    """Return the table's parts at all slopes and positions, ``(slopes, positions, 4)``."""
     along = _along_slopes(wavelength, tuple(positions))
     parts: Array = along(np.maximum(tangents, along.t[0]))
     return parts
@@ -153,7 +154,8 @@ def _rests(tangents: Array, wavelength: float, positions: Array) -> Array:
 
 @lru_cache(maxsize=16)
 def _along_slopes(wavelength: float, positions: tuple[float, ...]) -> scipy.interpolate.BSpline:
-    """The table's parts there over the tangent of the slope: cubic splines, harmonics in the position."""
+    """Return the table's parts there over the tangent of the slope: cubic splines, harmonics in the
+    position."""
     crest_to_valley = np.moveaxis(_over_wavenumber()(1 / wavelength), 1, 0)
     # 1 - position changes the neighbours' places: the other half of the turn
     turn = np.concatenate([crest_to_valley, crest_to_valley[-2:0:-1][..., [1, 0, 3, 2]]])
@@ -169,7 +171,8 @@ def _along_slopes(wavelength: float, positions: tuple[float, ...]) -> scipy.inte
 
 
 def _departure(tangents: Array, wavelength: float, positions: Array, nu: float, parts: Array) -> Array:
-    """Rough minus flat displacement of both neighbours (``p a / E``), ``(slopes, positions, 2)``."""
+    """Return the rough minus flat displacement of both neighbours (``p a / E``), ``(slopes, positions,
+    2)``."""
     tangent, at = tangents[:, None, None], positions[:, None]
     ends = 2 * math.pi * (np.array([-1.0, 1.0]) / wavelength + at)
     climb = tangent * wavelength / (2 * math.pi) * (np.cos(2 * math.pi * at) - np.cos(ends))
@@ -180,7 +183,8 @@ def _departure(tangents: Array, wavelength: float, positions: Array, nu: float, 
 
 
 def _flat(nu: float) -> float:
-    """``u(x) - u(0)`` of a strip on a flat half-plane at the neighbour, ``p a / E`` (Johnson 1985, 2.30)."""
+    """Return ``u(x) - u(0)`` of a strip on a flat half-plane at the neighbour, ``p a / E`` (Johnson 1985,
+    2.30)."""
     x = _NEIGHBOUR
     return -2 * (1 - nu**2) / math.pi * ((x + 1) * math.log(x + 1) - (x - 1) * math.log(x - 1))
 
@@ -192,7 +196,7 @@ def _table() -> dict[str, Array]:
 
 @cache
 def _over_wavenumber() -> scipy.interpolate.BSpline:
-    """Both parts of the rest at both neighbours over 1 / wavelength, ``(slopes, positions, 4)``.
+    """Return both parts of the rest at both neighbours over 1 / wavelength, ``(slopes, positions, 4)``.
 
     Waves of one offset and place repeat over the wavenumber, and not over the wavelength's logarithm.
     """

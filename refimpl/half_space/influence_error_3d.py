@@ -67,7 +67,7 @@ def steepest_tabulated() -> float:
 
 
 def _errors(slope: float, nu: float) -> Array:
-    """Errors (positions, 10): linear over the slope's tangent, quadratic in nu.
+    """Return the errors (positions, 10): linear over the slope's tangent, quadratic in nu.
 
     What is interpolated is the error over the tangent, and times ``1 - nu^2``, as a displacement is: its
     first-order part, ``(1 + nu)(1 - 2 nu)`` times the slope, is met exactly.
@@ -86,6 +86,6 @@ def _errors(slope: float, nu: float) -> Array:
 
 @cache
 def _table() -> tuple[Array, Array, Array]:
-    """Slopes (degrees), Poisson's ratios, and errors [ratio, position, slope, coefficient]."""
+    """Return the slopes (degrees), Poisson's ratios, and errors [ratio, position, slope, coefficient]."""
     table = shipped_table(SPACE)
     return table["slope_deg"], table["nu"], table["error"]

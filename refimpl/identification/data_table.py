@@ -101,7 +101,7 @@ def read_rows(table: str | Path | Any) -> tuple[Row, ...]:
 
 
 def _of_frame(table: Any) -> Cells:
-    """The cells of a data frame; missing ones are empty."""
+    """Return the cells of a data frame; missing ones are empty."""
     try:
         names = list(getattr(table, "columns", table))
         columns = [["" if cell is None or cell != cell else str(cell) for cell in table[k]] for k in names]
@@ -112,7 +112,7 @@ def _of_frame(table: Any) -> Cells:
 
 
 def _of_file(path: Path) -> tuple[Cells, str]:
-    """The cells of a CSV file, and its decimal mark."""
+    """Return the cells of a CSV file, and its decimal mark."""
     require_regular("data", path, MAX_BYTES)
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -139,7 +139,7 @@ def _of_file(path: Path) -> tuple[Cells, str]:
 
 
 def _without_index(cells: Cells) -> Cells:
-    """Lines without an unnamed first column of whole numbers from 0 or 1 on."""
+    """Return the lines without an unnamed first column of whole numbers from 0 or 1 on."""
     header, counts = cells[0][1], [row[0] for _, row in cells[1:]]
     if header[0] or counts not in ([str(k + first) for k in range(len(counts))] for first in (0, 1)):
         return cells
@@ -164,7 +164,7 @@ def _refuse_thousands(cells: Cells) -> None:
 
 
 def _check_header(header: Sequence[str]) -> str:
-    """The quantity measured, "mu" or "friction_force"."""
+    """Return the quantity measured, "mu" or "friction_force"."""
     shown = ",".join(header)
     known = {"load", *_FRICTION, *_FRICTION.values(), *_FRAME, *_FILES}
     if unknown := [name for name in header if name not in known]:
@@ -229,7 +229,8 @@ def _refuse_mixed_loads(rows: Sequence[Row]) -> None:
 
 
 def _refuse_swapped(rows: Sequence[Row]) -> None:
-    """No friction law with tau and beta has friction that falls with the load, or mu that rises with it."""
+    """Refuse friction that falls with the load, and mu that rises with it: no law with tau and beta has
+    them."""
     known = [row for row in rows if row.mu > 3 * row.u_mu]
     if not known:
         return

@@ -119,7 +119,8 @@ def data_covariance(rows: Sequence[Row], responses: Sequence[Response], between:
 
 
 def _bars(responses: Sequence[Response]) -> dict[str, Array]:
-    """Covariances of the model: rows share the factor of the mean excess, all else is each row's own."""
+    """Return the covariances of the model: rows share the factor of the mean excess, all else is each row's
+    own."""
     bars, shared, edge = (
         np.array([getattr(r, name) for r in responses]) / COVERAGE
         for name in ("numerical", "shared", "contact_edge")
@@ -194,7 +195,8 @@ def _linear_fit(
 
 
 def _deleted(weights: Array, hat: Array, misfit: Array) -> Array:
-    """Residual of each row from the fit to the others, in standard uncertainties (Cook and Weisberg 1982).
+    """Return the residual of each row from the fit to the others, in standard uncertainties (Cook and
+    Weisberg 1982).
 
     Rows are correlated, so it is ``(W e)_i / sqrt((W - W X G)_ii)``, without bounds; 0 for a row that a
     parameter rests on.
@@ -205,7 +207,8 @@ def _deleted(weights: Array, hat: Array, misfit: Array) -> Array:
 
 
 def _bounded(design: Array, wanted: Array, free: Array, scale: Array) -> Array:
-    """Least squares with tau and beta not negative and with the longest step of further parameters.
+    """Return the least squares with tau and beta not negative and with the longest step of further
+    parameters.
 
     All in units of ``scale``; ``free`` is the minimum without bounds.
     """

@@ -164,7 +164,8 @@ def _response(
 
 
 def _log_slope(scene: Scene, solution: Solution, name: str) -> float:
-    """``d mu / d ln p`` by two solves: areas, and with them friction, are counted (`grid_sensitivity`)."""
+    """Return ``d mu / d ln p`` by two solves: areas, and with them friction, are counted
+    (`grid_sensitivity`)."""
     value = parameters(scene)[name]
     return value * difference_quotients(scene, solution, name, value)[0]["friction_coefficient_corrected"]
 
@@ -172,7 +173,7 @@ def _log_slope(scene: Scene, solution: Solution, name: str) -> float:
 def _inputs(
     scene: Scene, solution: Solution, tolerances: Mapping[str, float]
 ) -> tuple[dict[str, float], int]:
-    """Changes of mu at the tolerances (95 %), and the solves that they take."""
+    """Return the changes of mu at the tolerances (95 %), and the solves that they take."""
     if not tolerances:
         return {}, 0
     found = grid_sensitivity(scene, solution, tuple(tolerances))
@@ -185,7 +186,7 @@ def _inputs(
 
 
 def _condensed(solution: Solution, load: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Mean pressures of groups of elements, ordered by pressure, and the groups' weights."""
+    """Return the mean pressures of groups of elements, ordered by pressure, and the groups' weights."""
     active = solution.contact & ~solution.details.excluded
     slopes = solution.slopes
     along = (slopes.cos_x * slopes.cos_y + solution.grid.zeros)[active] * solution.grid.element_area / load

@@ -95,7 +95,7 @@ def _result(
     profile: Profile | VaryingProfile,
     further: Sequence[str],
 ) -> Identification:
-    """The result of a fit and its covariance by source, without a further solve."""
+    """Return the result of a fit and its covariance by source, without a further solve."""
     covariance = np.asarray(sum(parts.values()))
     values = _values(fitted, profile, further)
     units = np.array([1.0, 1.0, *(values[name].value for name in further)])
@@ -129,7 +129,8 @@ def _predictions(
     profile: Profile | VaryingProfile,
     realisations: int,
 ) -> tuple[Prediction, ...]:
-    """Predictions at the loads of all rows, whose responses the fit has, and at further ones (N)."""
+    """Return the predictions at the loads of all rows, whose responses the fit has, and at further ones
+    (N)."""
     theta = result.fitted.theta
     new = [mean_response(draws(forward, replace(scene, load=load), theta, realisations)) for load in loads]
     responses, at = (*result.fitted.responses, *new), (*(row.load for row in rows), *loads)
@@ -141,7 +142,7 @@ def _predictions(
 def _fitted(
     scene: Scene, rows: Sequence[Row], forward: Forward, realisations: int, tolerances: Mapping[str, float]
 ) -> tuple[Fit, dict[str, Array]]:
-    """The fit, and the covariance by source."""
+    """Return the fit, and the covariance by source."""
     logarithms = [math.log(parameters(scene)[name]) for name in forward.further]
     start, scenes = np.concatenate([_start(scene, rows), logarithms]), [row.of(scene) for row in rows]
     try:
@@ -156,7 +157,7 @@ def _fitted(
 
 
 def _of_row(refused: InputError, rows: Sequence[Row]) -> InputError:
-    """The refusal of a load, which names the row; any other unchanged."""
+    """Return the refusal of a load, which names the row; any other unchanged."""
     found = [k for k, row in enumerate(rows, 1) if row.load == refused.value]
     if refused.field != "load" or not found:
         return refused
@@ -166,7 +167,7 @@ def _of_row(refused: InputError, rows: Sequence[Row]) -> InputError:
 def _proposal(
     scene: Scene, forward: Forward, result: Identification, parts: Mapping[str, Array], realisations: int
 ) -> Proposal | None:
-    """Further loads, measured as well as the present ones in the median."""
+    """Return the further loads, measured as well as the present ones in the median."""
     rows, theta = result.rows, result.fitted.theta
     trials = trial_responses(scene, rows, forward, theta, realisations)
     relative = float(np.median([row.u_mu / max(row.mu, row.u_mu) for row in rows]))
@@ -174,7 +175,7 @@ def _proposal(
 
 
 def _values(fitted: Fit, profile: Profile | VaryingProfile, further: Sequence[str]) -> dict[str, Interval]:
-    """Values with their intervals; those of further parameters from the logarithms'."""
+    """Return the values with their intervals; those of further parameters from the logarithms'."""
     found = {}
     for j, name in enumerate(("tau", "beta", *further)):
         ends = float(fitted.theta[j]), *profile.interval(np.eye(len(fitted.theta))[j])
@@ -183,7 +184,7 @@ def _values(fitted: Fit, profile: Profile | VaryingProfile, further: Sequence[st
 
 
 def _power(logarithm: float) -> float:
-    """``exp``, infinite where an interval is too wide for floating point."""
+    """Return ``exp``, infinite where an interval is too wide for floating point."""
     return math.exp(logarithm) if logarithm < _LARGEST else math.inf
 
 
@@ -222,7 +223,7 @@ def _check(
 
 
 def _start(scene: Scene, rows: Sequence[Row]) -> Array:
-    """First guess: the scene's friction, or the least measured mu as beta and hardly any tau.
+    """Return the first guess: the scene's friction, or the least measured mu as beta and hardly any tau.
 
     Little friction leaves the contact nearly as it is without: the solve converges, and slopes hold. A tau
     above the pressures of the smallest load, which nobody knows beforehand, does neither.
@@ -234,7 +235,7 @@ def _start(scene: Scene, rows: Sequence[Row]) -> Array:
 
 
 def _best_factor(covariance: Array, mean: Array) -> float:
-    """``k`` (1/Pa) of the combination ``k tau + beta`` with the least variance; never below zero."""
+    """Return ``k`` (1/Pa) of the combination ``k tau + beta`` with the least variance; never below zero."""
     best = -float(covariance[0, 1] / covariance[0, 0])
     return best if best > 0 else float(mean[0] / mean[1])
 
@@ -242,7 +243,8 @@ def _best_factor(covariance: Array, mean: Array) -> float:
 def _prediction(
     load: float, response: Response, theta: Array, profile: Profile | VaryingProfile
 ) -> Prediction:
-    """Interval of mu: parameters by their likelihood, bars and scatter of mu at this load, in squares."""
+    """Return the interval of mu: parameters by their likelihood, bars and scatter of mu at this load, in
+    squares."""
     mu = response.predict(theta)
     slopes = np.array(response.slopes)
     slopes[: len(NAMES)] = np.maximum(slopes[: len(NAMES)], 0.0)

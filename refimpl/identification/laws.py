@@ -57,7 +57,7 @@ def compare(rows: Sequence[Row], fitted: Fit) -> tuple[Law, ...]:
 
 
 def _limited(fitted: Fit, measured: Array) -> Law:
-    """The law with a limit, from several starts: the least of them."""
+    """Return the law with a limit, from several starts: the least of them."""
     pressures = [np.array(response.pressures) for response in fitted.responses]
     weights = [np.array(response.weights) for response in fitted.responses]
     tau, beta = fitted.theta[:BOUNDED]

@@ -37,7 +37,8 @@ def notes(result: Identification) -> tuple[str, ...]:
 
 
 def _scale(responses: Sequence[Response]) -> Iterator[str]:
-    """Loads out of the scene's scale. Friction alone shows no unit: A/P of a ball is a power of P."""
+    """Yield warnings of loads out of the scene's scale. Friction alone shows no unit: A/P of a ball is a
+    power of P."""
     most = max(response.contact_fraction for response in responses)
     if most < _LEAST:
         yield (
@@ -122,7 +123,7 @@ def _law(result: Identification) -> Iterator[str]:
 
 
 def _limits(responses: Sequence[Response]) -> list[str]:
-    """Warnings of the solves, one of each kind: texts that differ in their numbers alone are one.
+    """Return the warnings of the solves, one of each kind: texts that differ in their numbers alone are one.
 
     Where contact of one row is at the hardness, the plasticity index of the others says nothing new.
     """

@@ -88,7 +88,7 @@ class Profile:
         return float(away @ self.precision @ away)
 
     def _faces(self) -> Iterator[tuple[Indices, Array, Array]]:
-        """Each face: its free parameters, the optimum on it, and the covariance of the free ones."""
+        """Yield each face: its free parameters, the optimum on it, and the covariance of the free ones."""
         n = len(self.centre)
         for count in range(BOUNDED + 1):
             for chosen in itertools.combinations(range(BOUNDED), count):
@@ -101,7 +101,8 @@ class Profile:
                 yield free, theta, covariance
 
     def _optimum(self) -> Array:
-        """The optimum within the bounds: inside, or on one of their faces, the last of which has no bound."""
+        """Return the optimum within the bounds: inside, or on one of their faces, the last of which has no
+        bound."""
         inside = [theta for _, theta, _ in self._faces() if np.all(theta[:BOUNDED] >= 0)]
         return np.asarray(min(inside, key=self._misfit) * self.scale)
 
@@ -144,5 +145,5 @@ class Profile:
         return any(self.centre[j] < self.quantile(axis) for j, axis in enumerate(self._axes()))
 
     def _axes(self) -> Array:
-        """Unit vectors of the bounded parameters."""
+        """Return the unit vectors of the bounded parameters."""
         return np.eye(len(self.centre))[:BOUNDED]

@@ -59,13 +59,14 @@ def closed_form(x: Array, y: Array, dx: float, dy: float) -> Array:
 
 
 def _weighted_log(t: Array, x: Array, dx: float) -> Array:
-    """``t * over_y(t)``, 0 at t = 0 even at an end of the element; safe where squares underflow."""
+    """Return ``t * over_y(t)``, 0 at t = 0 even at an end of the element; safe where squares underflow."""
     near = np.maximum(np.hypot(x - dx / 2, t), _FLOOR)
     return 0.5 * t * np.log1p(2 * dx * x / near / near)
 
 
 def _angle_between_ends(t: Array, x: Array, half: float) -> Array:
-    """psi(t): angle between the directions to the two x-ends, seen from ``0 <= x < half``; odd in t."""
+    """Return psi(t): angle between the directions to the two x-ends, seen from ``0 <= x < half``; odd in
+    t."""
     return np.arctan2(2 * x * t, (half - x) * (half + x) + t * t)
 
 

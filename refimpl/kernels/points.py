@@ -79,7 +79,7 @@ def _lengths(name: str, given: ArrayLike) -> Array:
 
 
 def _evaluate(kernel: Kernel, x: Array, y: Array, dx: float, dy: float) -> Array:
-    """The kernel at ``x, y >= 0``: near in closed form, farther by the fewest points that suffice."""
+    """Return the kernel at ``x, y >= 0``: near in closed form, farther by the fewest points that suffice."""
     q_x, q_y = 2 * x / dx, 2 * y / dy
     q = np.maximum(q_x, q_y)
     integral = np.empty(q.shape)

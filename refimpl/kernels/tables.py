@@ -88,7 +88,7 @@ def _table(kernel: Kernel, n: int, m: int, dx: float, dy: float, known: Array | 
 
 
 def _symmetric_table(kernel: Kernel, n: int, m: int, edge: float, known: Array | None) -> Array:
-    """The same for square elements, ``n >= m``, and a kernel symmetric in x and y: half the work."""
+    """Return the same for square elements, ``n >= m``, and a kernel symmetric in x and y: half the work."""
     table, done = _begun(kernel, n, m, edge, edge, known)
     for start, stop in _slabs(n, m, done):
         columns = min(stop, m)
@@ -103,7 +103,8 @@ def _symmetric_table(kernel: Kernel, n: int, m: int, edge: float, known: Array |
 
 
 def _begun(kernel: Kernel, n: int, m: int, dx: float, dy: float, known: Array | None) -> tuple[Array, int]:
-    """A table of NaN (so that no gap between slabs goes unseen) with its first corner, and that one's size.
+    """Return a table of NaN (so that no gap between slabs goes unseen) with its first corner, and that one's
+    size.
 
     The corner is what is known, or as much as the closed form serves.
     """
@@ -122,7 +123,7 @@ def _offsets(start: int, stop: int, edge: float) -> Array:
 
 
 def _slabs(n: int, m: int, known: int) -> Iterator[tuple[int, int]]:
-    """``[start, stop)``, for rows and columns alike: thin near the load, where the order changes fast.
+    """Yield ``[start, stop)``, for rows and columns alike: thin near the load, where the order changes fast.
 
     Where slabs start does not depend on n and m as long as both are larger; those that end within what is
     ``known`` are passed over.

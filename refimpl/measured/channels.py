@@ -57,14 +57,15 @@ def chosen(path: Path, names: list[str], channel: str | int | None) -> int:
 
 
 def _listed(names: list[str]) -> str:
-    """Numbers and names, as many and as much of each as a line of a message holds."""
+    """Return the numbers and names, as many and as much of each as a line of a message holds."""
     shown = [f"{k} {name[:NAME_SHOWN]!r}" for k, name in enumerate(names[:NAMES_SHOWN])]
     more = len(names) - len(shown)
     return ", ".join([*shown, f"and {more} more"] if more else shown)
 
 
 def _maps(channels: list[Any], reader: Any, arrays: bool) -> list[int]:
-    """Maps of heights, from the library's own on; of several arrays those that are named as heights are."""
+    """Return the maps of heights, from the library's own on; of several arrays those that are named as
+    heights are."""
     default = reader._default_channel_index
     order = [default, *range(len(channels))] if default < len(channels) else range(len(channels))
     maps = [k for k in dict.fromkeys(order) if _is_height(channels[k])]

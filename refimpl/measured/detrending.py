@@ -31,7 +31,7 @@ class Polynomial:
     radius: float | None = None
 
     def __call__(self, x: Array, y: Array) -> Array:
-        """Heights at all pairs of ``x``, ``y``, shape ``(len(x), len(y))``."""
+        """Return the heights at all pairs of ``x``, ``y``, shape ``(len(x), len(y))``."""
         X, Y = (self._powers(at, axis) for axis, at in enumerate((x, y)))
         return np.asarray(X @ self.coefficients @ Y.T)
 
@@ -68,7 +68,7 @@ class Curved:
         return np.asarray(z0 + along * s + _cap(across * t, t**2, across, curvature))
 
     def _turned(self, x: Array, y: Array) -> tuple[Array, Array]:
-        """Distances (m) along and across the axis."""
+        """Return the distances (m) along and across the axis."""
         x, y = x * self.pixel[0], y * self.pixel[1]
         cos, sin = math.cos(self.axis or 0.0), math.sin(self.axis or 0.0)
         return cos * x + sin * y, cos * y - sin * x
@@ -89,7 +89,7 @@ Form = Polynomial | Curved
 
 
 def _cap(tilted: Array, squared: Array, slope: float, curvature: float) -> Array:
-    """Height w of a sphere (circle) of that curvature k through the origin, of that slope there.
+    """Return the height w of a sphere (circle) of that curvature k through the origin, of that slope there.
 
     From ``k (r^2 + w^2) = 2 (w - g.x) / s``, s = sqrt(1 + g^2); the plane g.x where k = 0.
     """
@@ -147,7 +147,8 @@ def fit(x: Array, y: Array, z: Array, degree: int) -> Polynomial:
 
 
 def _fit_curved(x: Array, y: Array, z: Array, level: str, pixel: tuple[float, float]) -> Curved:
-    """Least squares along z over height, slopes, curvature (and axis), from the paraboloid's values."""
+    """Return the least squares along z over height, slopes, curvature (and axis), from the paraboloid's
+    values."""
     thin = max(1, math.ceil(math.sqrt(z.size / _FITTED)))
     at_x, at_y, part = x[::thin], y[::thin], z[::thin, ::thin]
     start = fit(at_x, at_y, part, 2)

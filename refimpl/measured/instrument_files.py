@@ -70,8 +70,8 @@ def claimed_by_magic(path: Path, head: bytes) -> bool:
 
 
 def _formats(library: ModuleType, path: Path, head: bytes) -> list[str]:
-    """Formats to try: those whose mark the first bytes are, then those of the suffix; if there is none, all
-    that the bytes allow but those without a mark, which take any bytes."""
+    """Return the formats to try: those whose mark the first bytes are, then those of the suffix; if there is
+    none, all that the bytes allow but those without a mark, which take any bytes."""
     match, suffix = library.IO.MagicMatch, path.suffix.lower()[1:]
     marked, own, others = [], [], []
     for reader in library.IO.readers:
@@ -116,7 +116,8 @@ def _quietly() -> Iterator[list[warnings.WarningMessage]]:
 def _record(
     path: Path, form: str, found: Any, sized: bool, given: Overrides, said: list[warnings.WarningMessage]
 ) -> RawHeights:
-    """The library's map as it lies here: its heights (m; missing: NaN), pixel, unit, and the library's words.
+    """Return the library's map as it lies here: its heights (m; missing: NaN), pixel, unit, and the library's
+    words.
 
     ``sized``: the file states its size.
     """
@@ -146,7 +147,8 @@ def _record(
 
 
 def _of_container(library: ModuleType, path: Path, given: Overrides) -> RawHeights:
-    """A measurement of a container of contact.engineering, scaled and detrended as its metadata say."""
+    """Return a measurement of a container of contact.engineering, scaled and detrended as its metadata
+    say."""
     from SurfaceTopography.Container.IO import CEReader
 
     with _quietly() as said:

@@ -32,6 +32,6 @@ def core_parameters(z: Array) -> dict[str, float]:
 
 
 def _reduced(beyond: Array) -> float:
-    """Height of the triangle whose base and area are those beyond the core."""
+    """Return the height of the triangle whose base and area are those beyond the core."""
     share = float(np.mean(beyond > 0))
     return 2.0 * float(np.maximum(beyond, 0.0).mean()) / share if share else 0.0

@@ -144,7 +144,7 @@ class MeasuredSurface(Surface):
         return self._with(turn_over=True)
 
     def _with(self, **changes: Any) -> Self:
-        """The same file otherwise seen, read and filtered once."""
+        """Return the same file otherwise seen, read and filtered once."""
         other = replace(self, **changes)
         for name in ("reading", "prepared"):  # cached properties
             vars(other)[name] = getattr(self, name)
@@ -179,14 +179,15 @@ class MeasuredSurface(Surface):
         return {}
 
     def _last(self, name: str, key: object, compute: Callable[[], Any]) -> Any:
-        """The last result of that name where its key is the same: a solve, its bars and notes ask in turn."""
+        """Return the last result of that name where its key is the same: a solve, its bars and notes ask in
+        turn."""
         known = self._results.get(name)
         if known is None or known[0] != key:
             self._results[name] = known = key, compute()
         return known[1]
 
     def _repeated(self, grid: Grid, offset: tuple[float, float]) -> Array:
-        """Heights of a map that repeats with its own area."""
+        """Return the heights of a map that repeats with its own area."""
         reading, centre = self._oriented.reading, self._oriented.centre
         times = [length / period for length, period in zip(grid.lengths, reading.area, strict=True)]
         if grid.periodic and any(abs(n - max(round(n), 1)) > ROUNDING * n for n in times):
@@ -213,7 +214,7 @@ class MeasuredSurface(Surface):
         return window
 
     def _central(self, lengths: tuple[float, float]) -> tuple[Array, Form, Array]:
-        """At offset 0: the window's points (missing ones NaN), their form, and what is left of them."""
+        """Return at offset 0 the window's points (missing ones NaN), their form, and what is left of them."""
         found: tuple[Array, Form, Array] = self._last("form", lengths, partial(self._levelled, lengths))
         return found
 

@@ -62,7 +62,8 @@ def fill(heights: Array, pixel: tuple[float, float]) -> Array:
 def _equations(
     heights: Array, hole: NDArray[np.bool_], pixel: tuple[float, float]
 ) -> tuple[scipy.sparse.csr_array, Array]:
-    """The Laplace operator on the points of a hole, in their order, and what their known neighbours add."""
+    """Return the Laplace operator on the points of a hole, in their order, and what their known neighbours
+    add."""
     unknown = np.empty(heights.shape, dtype=np.intp)
     unknown[hole] = n = np.arange(np.count_nonzero(hole))
     diagonal, right = np.zeros(len(n)), np.zeros(len(n))
@@ -81,7 +82,8 @@ def _equations(
 
 
 def _neighbours(missing: NDArray[np.bool_], axis: int, step: int) -> tuple[_Index, _Index]:
-    """Indices of the missing points that have a neighbour on that side, and of those neighbours."""
+    """Return the indices of the missing points that have a neighbour on that side, and of those
+    neighbours."""
     i, j = np.nonzero(missing)
     ni, nj = (i + step, j) if axis == 0 else (i, j + step)
     inside = (ni >= 0) & (ni < missing.shape[0]) & (nj >= 0) & (nj < missing.shape[1])
@@ -89,7 +91,7 @@ def _neighbours(missing: NDArray[np.bool_], axis: int, step: int) -> tuple[_Inde
 
 
 def _iterated(heights: Array, hole: NDArray[np.bool_], pixel: tuple[float, float]) -> Array:
-    """Heights of the points in large holes, between the lowest and the highest of the array."""
+    """Return the heights of the points in large holes, between the lowest and the highest of the array."""
     low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
     middle = (low + high) / 2.0
     laplace, right = _equations(np.where(hole, 0.0, heights) - middle, hole, pixel)
@@ -108,7 +110,8 @@ class _Level(NamedTuple):
 
 
 def _levels(operator: scipy.sparse.csr_array, places: NDArray[np.intp]) -> list[_Level]:
-    """Galerkin operators of aggregates of 2 x 2 points, down to a few points; ``places``: (i, j) of each."""
+    """Return the Galerkin operators of aggregates of 2 x 2 points, down to a few points; ``places``: (i, j)
+    of each."""
     levels = []
     while True:
         places, aggregate = np.unique(places // 2, axis=0, return_inverse=True)
@@ -122,7 +125,7 @@ def _levels(operator: scipy.sparse.csr_array, places: NDArray[np.intp]) -> list[
 
 
 def _cycle(levels: list[_Level], depth: int, r: Array) -> Array:
-    """One W-cycle for ``A u = r`` from zero: symmetric, so that conjugate gradients may use it."""
+    """Run one W-cycle for ``A u = r`` from zero: symmetric, so that conjugate gradients may use it."""
     operator, smooth, aggregate = levels[depth]
     u = smooth * r
     if depth + 1 == len(levels):

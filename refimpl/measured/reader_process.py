@@ -61,7 +61,7 @@ def read_elsewhere(path: Path, load: Callable[[], T]) -> T:
 
 
 def _reader() -> subprocess.Popen[bytes]:
-    """The living reader, started where there is none."""
+    """Return the living reader, started where there is none."""
     own = os.getpid()
     if own not in _started or _started[own].poll() is not None:
         _started[own] = subprocess.Popen(

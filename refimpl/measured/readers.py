@@ -126,7 +126,7 @@ def _text(path: Path, given: Overrides, head: bytes) -> RawHeights:
 
 
 def _with_header(path: Path, table: TextTable, given: Overrides) -> RawHeights:
-    """Text whose header says what the library knows: Gwyddion's, SPIP's, Wyko's and others."""
+    """Return the text whose header says what the library knows: Gwyddion's, SPIP's, Wyko's and others."""
     library = library_for(path)
     if table.header[0].startswith(WYKO):
         table = replace(table, header=wyko_header(path, table.header))

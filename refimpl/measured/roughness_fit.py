@@ -108,14 +108,16 @@ def fit_roughness(z: Array, pixel: Pixel, kind: str, draws: int = 16) -> Roughne
 
 
 def _gaussian(z: Array, pixel: Pixel) -> tuple[Values, tuple[str, ...]]:
-    """Rms height; lengths of Eq. (9) and lay from the autocorrelation's ellipse around lag zero."""
+    """Return the rms height; lengths of Eq. (9) and lay from the autocorrelation's ellipse around lag
+    zero."""
     lx, ly, lay = _ellipse(z, pixel)
     found = {"rms": float(np.nanstd(z)), "lx": lx, "ly": ly}
     return found | ({"lay": lay} if lx > ly else {}), ()
 
 
 def _ellipse(z: Array, pixel: Pixel) -> Lay:
-    """Longer and shorter length of Eq. (9) and the lay (rad); equal lengths where the ratio is chance."""
+    """Return the longer and shorter length of Eq. (9) and the lay (rad); equal lengths where the ratio is
+    chance."""
     long, short, lay = Autocorrelation.of(z, pixel).lay()
     return long * math.sqrt(DECAY), short * math.sqrt(DECAY), lay
 
@@ -131,7 +133,8 @@ def _gaussian_psd(values: Values) -> Callable[[Array, Array], Array]:
 
 
 def _self_affine(z: Array, pixel: Pixel) -> tuple[Values, tuple[str, ...]]:
-    """Anisotropy and lay from the autocorrelation; Hurst exponent, roll-off by Whittle's likelihood."""
+    """Return the anisotropy and lay from the autocorrelation; Hurst exponent, roll-off by Whittle's
+    likelihood."""
     long, short, lay = _ellipse(z, pixel)
     g = long / short
     spectrum = Spectrum.of(z, pixel, g, lay if g > 1.0 else 0.0)
@@ -194,7 +197,7 @@ def _estimates(
     estimate: Callable[[Array, Pixel], tuple[Values, tuple[str, ...]]],
     draws: int,
 ) -> tuple[dict[str, Array], tuple[float, float]]:
-    """Estimates from drawn maps, by name, and the misfit of ``z`` to their spectra.
+    """Return the estimates from drawn maps, by name, and the misfit of ``z`` to their spectra.
 
     Maps of more than 512 points an axis are drawn with every second, third ... point; where waves would be
     lost by that, a part of the map is drawn, and the scatter goes down with the root of the area.
@@ -226,7 +229,8 @@ def _estimates(
 
 
 def _misfit(own: Spectrum, drawn: Array) -> tuple[float, float]:
-    """Rms of ln(C / mean C of the drawn) over the rings that carry the slopes: of the map, of a drawn map."""
+    """Return the rms of ln(C / mean C of the drawn) over the rings that carry the slopes: of the map, of a
+    drawn map."""
     power = np.cumsum(own.count * own.q**2 * own.C)
     use = slice(1, max(int(np.searchsorted(power, _CARRIED * power[-1])) + 1, 4))  # the plane is subtracted
     floor = np.finfo(float).tiny
@@ -236,7 +240,7 @@ def _misfit(own: Spectrum, drawn: Array) -> tuple[float, float]:
 
 
 def _near(drawn: float, value: float, name: str) -> float:
-    """Angles of a lay repeat with pi: the one nearest to ``value``."""
+    """Return the angle nearest to ``value``: angles of a lay repeat with pi."""
     return value + (drawn - value + math.pi / 2) % math.pi - math.pi / 2 if name == "lay" else drawn
 
 
@@ -247,7 +251,7 @@ def _drawn(
     rms: float,
     rng: np.random.Generator,
 ) -> Array:
-    """A Gaussian map of that spectrum's shape and ensemble rms: part of one of twice its period."""
+    """Return a Gaussian map of that spectrum's shape and ensemble rms: part of one of twice its period."""
     double = tuple(scipy.fft.next_fast_len(2 * n, real=True) for n in shape)
     qx = 2 * np.pi * scipy.fft.fftfreq(double[0], pixel[0])[:, None]
     qy = 2 * np.pi * scipy.fft.rfftfreq(double[1], pixel[1])[None, :]

@@ -72,14 +72,15 @@ def lines_of(path: Path, encoding: str) -> Iterator[tuple[int, str]]:
 
 
 def _spelled(line: str) -> str:
-    """The line with its missing points spelled nan; one of nothing else is a comment."""
+    """Return the line with its missing points spelled nan; one of nothing else is a comment."""
     if "#" not in line and "(" not in line:
         return line
     return line if _MISSING.fullmatch(line) else _MISSING.sub("nan", line)
 
 
 def _heights(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, str]]:
-    """Wyko's text without the arrays that are no heights: a block's line states its name, type and length."""
+    """Yield Wyko's text without the arrays that are no heights: a block's line states its name, type and
+    length."""
     keeps = True
     for number, line in lines:
         if block := _WYKO_BLOCK.match(line):

@@ -219,7 +219,7 @@ def _refuse_blocks(path: Path, rows: Array, blanks: set[int]) -> None:
 
 
 def _plain_numbers(layout: _Layout, lines: Iterator[str]) -> Array | None:
-    """The numbers by NumPy's reader, 20 times faster; None for what it cannot read."""
+    """Return the numbers by NumPy's reader, 20 times faster; None for what it cannot read."""
     separator = layout.separator
     try:
         ended = lines if separator is None else (line.removesuffix(separator) for line in lines)
@@ -231,7 +231,8 @@ def _plain_numbers(layout: _Layout, lines: Iterator[str]) -> Array | None:
 def _numbers(
     path: Path, layout: _Layout, lines: Iterator[tuple[int, str]], width: int
 ) -> tuple[Array, list[str]]:
-    """The numbers of all lines, each of ``width`` entries, and notes. Raises InputError with the line."""
+    """Return the numbers of all lines, each of ``width`` entries, and notes. Raises InputError with the
+    line."""
     values, decimals, filled, short = array("d"), set[str](), [False, False], list[int]()
     for number, line in lines:
         if layout.separator != ",":

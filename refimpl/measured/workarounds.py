@@ -37,7 +37,7 @@ def rewritten(path: Path, name: str | None, given: Overrides) -> tuple[Source, t
 
 
 def _sur(raw: bytes, path: Path) -> tuple[Source, tuple[str, ...]]:
-    """Units in UTF-8 become Latin-1. Compressed: a directory of streams (count; raw and packed length of
+    """Rewrite units in UTF-8 as Latin-1. Compressed: a directory of streams (count; raw and packed length of
     each), then the zlib streams."""
     raw = raw[:_SUR_HEADER].replace("µm\0".encode(), "µm\0\0".encode("latin-1")) + raw[_SUR_HEADER:]
     if not raw.startswith(b"DSCOMPRESSED"):
@@ -60,7 +60,7 @@ def _sur(raw: bytes, path: Path) -> tuple[Source, tuple[str, ...]]:
 
 
 def _gwy(raw: bytes, path: Path, given: Overrides) -> tuple[Source, tuple[str, ...]]:
-    """Fields that lack a unit get the given one and the given pixel, unless another field states its own."""
+    """Give fields that lack a unit the given one and the given pixel, unless another field states its own."""
     fields = [(m.end(), m.end() + int.from_bytes(m[1], "little")) for m in _GWY_FIELD.finditer(raw)]
     stated = [[_gwy_unit(raw[begin:end], key) for key in _GWY_UNITS] for begin, end in fields]
     if all(map(all, stated)) or any(set(units) <= set(UNITS) for units in stated):
@@ -83,7 +83,7 @@ def _gwy(raw: bytes, path: Path, given: Overrides) -> tuple[Source, tuple[str, .
 
 
 def _gwy_unit(field: bytes, key: bytes) -> str:
-    """Unit that a field states, or nothing."""
+    """Return the unit that a field states, or nothing."""
     found = re.search(rb"%b\0oGwySIUnit\0.{4}unitstr\0s([^\0]*)" % key, field, re.DOTALL)
     return found[1].decode("utf-8", "replace") if found else ""
 

@@ -32,8 +32,9 @@ def rewritten(path: Path) -> tuple[str | io.BytesIO, tuple[str, ...]]:
 
     Raises `InputError` for data of another checksum than main.xml states, and for what is no regular map.
     """
-    with zipfile.ZipFile(path) as archive:
-        members = {member.replace("\\", "/"): member for member in archive.namelist()}
+    copy = io.BytesIO()
+    with zipfile.ZipFile(path) as archive, zipfile.ZipFile(copy, "w", compresslevel=1) as target:
+        members = {member.filename.replace("\\", "/"): member for member in archive.infolist()}
         mains = [m for m in members if m.rpartition("/")[2].lower() == "main.xml"]
         if not mains:
             return str(path), ()
@@ -43,27 +44,24 @@ def rewritten(path: Path) -> tuple[str | io.BytesIO, tuple[str, ...]]:
         revision = root.find("Record1/Revision")
         if revision is not None and revision.text != _REVISION:
             changed, revision.text = [f"revision {printable(revision.text or '')!r}"], _REVISION
-        data: dict[str, bytes] = {}
         if (listed := root.find("Record3/DataList")) is not None:
             changed.append("its heights in main.xml")
-            data[_DATA] = _linked(root, listed)
+            target.writestr(_DATA, _linked(root, listed))
         folder = main[: -len("main.xml")]
         changed += [f"folder {folder!r} in the archive"] if folder else []
         for link, checksum in _LINKS:
-            if (member := members.get(f"{folder}{root.findtext(f'Record3/DataLink/{link}')}")) is not None:
-                data[member.replace("\\", "/")[len(folder) :]] = content = archive.read(member)
+            name = root.findtext(f"Record3/DataLink/{link}") or ""
+            if name and (member := members.get(folder + name)) is not None:
+                content = archive.read(member)
                 _refuse_changed(path, content, root.findtext(f"Record3/DataLink/{checksum}") or "", link)
-    copy = io.BytesIO()
-    with zipfile.ZipFile(copy, "w") as target:
+                target.writestr(name, content, member.compress_type)  # packed again, for memory
         target.writestr("main.xml", ElementTree.tostring(root))
-        for name, content in data.items():
-            target.writestr(name, content)
     copy.seek(0)
     return copy, (f"X3P with {', '.join(changed)}",) if changed else ()
 
 
 def _bare(text: bytes) -> ElementTree.Element:
-    """The elements that say what the map is: no name spaces, no empty numbers, no Record2."""
+    """Return the elements that say what the map is: no name spaces, no empty numbers, no Record2."""
     root = ElementTree.fromstring(text)
     for parent in list(root.iter()):
         parent.tag, parent.text = parent.tag.rpartition("}")[2], (parent.text or "").strip()

@@ -299,7 +299,8 @@ def certify(
 
 
 def _shares(f: Array) -> Array:
-    """Pressures over their sum, as products of very small ones would underflow; 0 without contact."""
+    """Return the pressures over their sum, as products of very small ones would underflow; 0 without
+    contact."""
     total = float(f.sum())
     return f / total if total > 0 else f
 

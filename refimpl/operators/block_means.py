@@ -57,7 +57,7 @@ class BlockMeans:
         return found[:n, :m]
 
     def _sums(self, field: Array) -> list[Array]:
-        """Sums over blocks, from the least ones on."""
+        """Return the sums over blocks, from the least ones on."""
         sums = [self._blocks(field)]
         for _ in range(_LEVELS):
             last = sums[-1][::2] + sums[-1][1::2]
@@ -65,7 +65,7 @@ class BlockMeans:
         return sums[_FINEST:]
 
     def _blocks(self, field: Array) -> Array:
-        """The field with zeros up to whole blocks."""
+        """Return the field with zeros up to whole blocks."""
         room = [(0, -n % 2**_LEVELS) for n in self._shape]
         return np.pad(field, room) if any(more for _, more in room) else field
 
@@ -76,7 +76,7 @@ def _doubled(values: Array) -> Array:
 
 
 def _halved(values: Array) -> Array:
-    """The transpose of `_doubled`."""
+    """Return the transpose of `_doubled`."""
     return _halved_rows(_halved_rows(values).T).T
 
 
@@ -91,5 +91,5 @@ def _halved_rows(values: Array) -> Array:
 
 
 def _repeated(values: Array) -> Array:
-    """Each value for all four elements of a block."""
+    """Return each value for all four elements of a block."""
     return np.repeat(np.repeat(values, 2, axis=0), 2, axis=1)

@@ -139,7 +139,8 @@ class FFTInfluence:
         return even_hat(self._quarter("normal"), threads(points))
 
     def _quarter(self, kind: str, axis: int = 0) -> Array:
-        """A kernel at the offsets from 0 to half of each circle (m): that along an axis if it is tangential.
+        """Return a kernel at the offsets from 0 to half of each circle (m): that along an axis if it is
+        tangential.
 
         Rows are offsets along that axis.
         """
@@ -159,7 +160,8 @@ class FFTInfluence:
         return self._tangential_hat(self.direction + math.pi / 2)
 
     def _tangential_hat(self, angle: float) -> Complex:
-        """The kernel's transform: of quarters of its parts along x and y, unless offsets opposite 0 count."""
+        """Return the kernel's transform: of quarters of its parts along x and y, unless offsets opposite 0
+        count."""
         points = self._points
         cos, sin = math.cos(angle), math.sin(angle)
         if self._is_odd:
@@ -173,12 +175,12 @@ class FFTInfluence:
         )
 
     def _signed(self, kind: str, axis: int = 0) -> Array:
-        """A kernel at all offsets around the circles (m), rows along an axis."""
+        """Return a kernel at all offsets around the circles (m), rows along an axis."""
         table = signed_table(kind, self._offsets[axis], self._offsets[1 - axis], self._aspect(axis))
         return table * self.grid.spacings[axis]
 
     def _aspect(self, axis: int) -> float:
-        """An element's other edge over that along an axis."""
+        """Return an element's other edge over that along an axis."""
         return self.grid.aspect if axis == 0 else 1 / self.grid.aspect
 
     def _transformed(self, kernel: Array) -> Complex:
@@ -231,13 +233,14 @@ class WholeGridInfluence(FFTInfluence):
 
 
 def _blocks(count: int) -> Iterator[slice]:
-    """Columns in blocks, so that no second array of all of them is needed."""
+    """Yield the columns in blocks, so that no second array of all of them is needed."""
     for start in range(0, count, _COLUMNS):
         yield slice(start, min(start + _COLUMNS, count))
 
 
 def _padded(source: Window, target: Window) -> tuple[int, int]:
-    """Fast lengths that hold every offset once, or also its opposite if that takes few points more.
+    """Return the fast lengths that hold every offset once, or also its opposite if that takes few points
+    more.
 
     A kernel's transform then costs an eighth of an application instead of a half, which is worth a third.
     """
@@ -249,13 +252,14 @@ def _padded(source: Window, target: Window) -> tuple[int, int]:
 
 
 def _farthest(source: Window, target: Window) -> tuple[int, int]:
-    """The greatest offsets from source to target along each axis, either way."""
+    """Return the greatest offsets from source to target along each axis, either way."""
     rows = max(target.i1 - source.i0, source.i1 - target.i0) - 1
     return rows, max(target.j1 - source.j0, source.j1 - target.j0) - 1
 
 
 def _circle(n: int, lowest: int, highest: int) -> NDArray[np.int_]:
-    """Offsets around a circle of ``n`` points that holds ``lowest ... highest`` once, 0 at its start.
+    """Return the offsets around a circle of ``n`` points that holds ``lowest ... highest`` once, 0 at its
+    start.
 
     Even, but for the point opposite 0, where there is room: an even kernel then has a real transform.
     """
@@ -269,7 +273,7 @@ def _is_even(circle: NDArray[np.int_]) -> bool:
 
 
 def _places(n: int, shift: int, source: int, target: int) -> tuple[slice, slice]:
-    """Where source and target, ``shift`` further, lie on a circle of n points: neither across its end.
+    """Return where source and target, ``shift`` further, lie on a circle of n points: neither across its end.
 
     >>> _places(8, -2, 3, 5)
     (slice(2, 5, None), slice(0, 5, None))

@@ -54,7 +54,7 @@ class SpectralPreconditioner:
         self._symbol = (symbol.min() / symbol).astype(self._precision)
 
     def __call__(self, residual: Array) -> Array:
-        """The preconditioned residual, same shape; the caller masks argument and result."""
+        """Return the preconditioned residual, same shape; the caller masks argument and result."""
         points = math.prod(self._circle)
         self._counter.add("preconditioner", points)
         workers = threads(points)
@@ -137,7 +137,7 @@ class ExtendedPreconditioner:
             self._left.ravel()[self._beyond] -= np.bincount(self._to, self._weights)
 
     def __call__(self, residual: Array) -> Array:
-        """The preconditioned residual, same shape; the caller masks argument and result.
+        """Return the preconditioned residual, same shape; the caller masks argument and result.
 
         An element that has come into contact since has a residual of its own, and goes on with that.
         """
@@ -159,7 +159,8 @@ class ExtendedPreconditioner:
 
 
 def _near(marked: Mask, width: int) -> Mask:
-    """Within a square's reach of something marked, in rows this long; a frame as wide is not marked."""
+    """Mark all within a square's reach of something marked, in rows this long; a frame as wide is not
+    marked."""
     for stride in (1, width):
         near = marked.copy()
         for step in range(stride, _REACH * stride + 1, stride):

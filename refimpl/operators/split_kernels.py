@@ -61,7 +61,7 @@ def _near(kind: str) -> Array:
 
 
 def _far(kind: str, x: Array, y: Array) -> Array:
-    """``Phi(r) / r`` or ``x Psi(r) / r^2``."""
+    """Return ``Phi(r) / r`` or ``x Psi(r) / r^2``."""
     squared = x * x + y * y
     at = squared < RADIUS**2
     inside = squared[at] / RADIUS**2
@@ -78,7 +78,7 @@ def _far(kind: str, x: Array, y: Array) -> Array:
 
 @cache
 def _normal_inside() -> Array:
-    """Coefficients of ``Phi(r) / r`` by Chebyshev's polynomials in ``2 (r / R)^2 - 1``."""
+    """Return the coefficients of ``Phi(r) / r`` by Chebyshev's polynomials in ``2 (r / R)^2 - 1``."""
     points, weights = np.polynomial.legendre.leggauss(80)
     t = np.polynomial.chebyshev.chebpts1(41)
     at = np.sqrt((t[:, None] + 1) / 2) * (points + 1) / 2
@@ -89,7 +89,7 @@ def _normal_inside() -> Array:
 
 @cache
 def _taps() -> Array:
-    """The filter: in the band, the mean over an element divided by two windows; beyond, anything."""
+    """Return the filter: in the band, the mean over an element divided by two windows; beyond, anything."""
     k = np.linspace(0, np.pi / 2, 200)  # 1/spacing
     root = np.sqrt(_WINDOW_SHAPE**2 - (k * WIDTH / 2) ** 2)
     undone = WIDTH * np.sinh(root) / root / scipy.special.i0(_WINDOW_SHAPE)
@@ -101,7 +101,8 @@ def _taps() -> Array:
 
 
 def _filter(count: int, sign: int) -> Array:
-    """Matrix from values at ``count + _TAPS`` offsets from 0, of an even or odd field, to those filtered."""
+    """Return the matrix from values at ``count + _TAPS`` offsets from 0, of an even or odd field, to those
+    filtered."""
     taps, i, j = _taps(), np.arange(count)[:, None], np.arange(count + _TAPS)
     matrix: Array = taps[np.minimum(np.abs(i - j), _TAPS + 1)]
     matrix[:, 1:] += sign * taps[np.minimum(i + j, _TAPS + 1)][:, 1:]

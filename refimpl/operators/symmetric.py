@@ -32,5 +32,5 @@ def odd_hat(along_x: Array, along_y: Array | None, workers: int) -> Complex:
 
 
 def _mirrored(half: Array, sign: float) -> Array:
-    """Continued around the second axis' circle, with that sign beyond its half."""
+    """Continue around the second axis' circle, with that sign beyond its half."""
     return np.concatenate([half, sign * half[:, -2:0:-1]], axis=1)

@@ -41,5 +41,5 @@ def plain_number_of_threads() -> Iterator[None]:
 
 
 def _number(said: str) -> int | None:
-    """The positive whole number that the text is, of six digits at most."""
+    """Return the positive whole number that the text is, of six digits at most."""
     return int(said) if re.fullmatch(r"\s*0*[1-9][0-9]{0,5}\s*", said) else None

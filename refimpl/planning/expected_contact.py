@@ -107,7 +107,7 @@ def expected_contact(problem: Problem) -> ExpectedContact:
 
 
 def _coarse(problem: Problem) -> Problem:
-    """The problem's heights at fewer points, if there are more than it takes."""
+    """Return the problem's heights at fewer points, if there are more than it takes."""
     n, m = problem.grid.shape
     grid = problem.grid.refined((min(n, _COARSE), min(m, _COARSE)))
     gap, mean_surface = (resampled(z, grid.shape) for z in (problem.gap, problem.mean_surface))
@@ -115,7 +115,7 @@ def _coarse(problem: Problem) -> Problem:
 
 
 def _bearing(problem: Problem, stiffness: float, load: float) -> Mask:
-    """The smallest number of lowest elements that carry the load, or all."""
+    """Return the smallest number of lowest elements that carry the load, or all."""
     order = _rising(problem.gap)
     squares = np.cumsum(_gradient_squared(problem).ravel()[order])
     carried = stiffness * np.sqrt(squares * np.arange(1, order.size + 1))
@@ -123,20 +123,20 @@ def _bearing(problem: Problem, stiffness: float, load: float) -> Mask:
 
 
 def _first(order: NDArray[np.intp], count: int, gap: Array) -> Mask:
-    """The first ``count`` elements of an order, or all, and those as low as the last: a flat top touches as a
-    whole."""
+    """Return the first ``count`` elements of an order, or all, and those as low as the last: a flat top
+    touches as a whole."""
     last = order[min(count, order.size) - 1]
     chosen: Mask = gap <= gap.flat[last] + _ROUNDING * np.ptp(gap)
     return chosen
 
 
 def _rising(gap: Array) -> NDArray[np.intp]:
-    """All elements from the lowest on, equal ones in the grid's order."""
+    """Return all elements from the lowest on, equal ones in the grid's order."""
     return np.argsort(gap, axis=None, kind="stable")
 
 
 def _gradient_squared(problem: Problem) -> Array:
-    """Squared gradient of the gap."""
+    """Return the squared gradient of the gap."""
     slopes = _slopes(problem, problem.gap)
     squared: Array = slopes.tan_x**2 + slopes.tan_y**2
     return squared
@@ -159,7 +159,7 @@ def solved_contact(
 def _described(
     problem: Problem, contact: Mask, loads: Array, clearance: Array, mean_pressure: float, pressure: float
 ) -> dict[str, Any]:
-    """What depends on the contact set; ``loads`` weighs its elements, in their order.
+    """Return what depends on the contact set; ``loads`` weighs its elements, in their order.
 
     Sums are not BLAS's: bits vary there.
     """
@@ -185,13 +185,13 @@ def _described(
 
 
 def _on(where: Mask, problem: Problem, heights: Array) -> tuple[Array, Array]:
-    """Slopes along and across the sliding direction on the marked elements."""
+    """Return the slopes along and across the sliding direction on the marked elements."""
     slopes = _slopes(problem, heights)
     return slopes.tan_x[where], slopes.tan_y[where]
 
 
 def _symmetries(coarse: Problem, problem: Problem) -> tuple[bool, bool]:
-    """Whether both surfaces are their own images after half a turn, and across the sliding line.
+    """Return whether both surfaces are their own images after half a turn, and across the sliding line.
 
     So they are if gap and mean surface are; the coarse heights rule most scenes out before all heights are
     compared.
@@ -205,20 +205,21 @@ def _slopes(problem: Problem, heights: Array) -> Slopes:
 
 
 def _patches(contact: Mask, periodic: bool) -> float:
-    """Number of patches of equal size with the same weight: ``(sum n)^2 / sum n^2`` over the patches."""
+    """Return the number of patches of equal size with the same weight: ``(sum n)^2 / sum n^2`` over the
+    patches."""
     sizes = patch_sizes(contact, periodic=periodic).astype(np.float64)
     return float(sizes.sum() ** 2 / np.sum(sizes**2))
 
 
 def _is_image(z: Array, image: Array) -> bool:
-    """Whether a surface is its image, which pairs the first half of its rows with the second."""
+    """Return whether a surface is its image, which pairs the first half of its rows with the second."""
     half = (len(z) + 1) // 2
     apart = float(np.abs(z[:half] - image[:half]).max())
     return apart == 0 or apart <= _ROUNDING * float(np.ptp(z))
 
 
 def _mirrored(direction: float, surfaces: Sequence[Array]) -> bool:
-    """Whether surfaces are mirror images of themselves across the sliding line, a grid axis."""
+    """Return whether surfaces are mirror images of themselves across the sliding line, a grid axis."""
     quarter = direction / (math.pi / 2)
     if abs(quarter - round(quarter)) > _ROUNDING:
         return False

@@ -102,7 +102,7 @@ class _Choice:
         return coupled, oblique, tilted, correction, self._active_set(moved), self._plastic()
 
     def _requested(self, name: str, excluded: str = "excluded") -> Term | None:
-        """The term as the user requests it; None where the scene decides."""
+        """Return the term as the user requests it; None where the scene decides."""
         included = getattr(self.requested, name)
         if included is None:
             return None
@@ -135,7 +135,7 @@ class _Choice:
         return Term(name, True, "slopes enter Eqs (2), (3) and (6)", effect)
 
     def _tilted(self, coupled: Term, oblique: Term, budget: float) -> Term:
-        """With coupling the kernel of shear is there, and this term costs nothing more."""
+        """Plan the term: with coupling the kernel of shear is there, and this term costs nothing more."""
         name, effect, correction = "tilted", self.effects["tilted"], self.requested.slope_correction
         if not oblique.included:
             return Term(name, False, "no slope terms")
@@ -165,7 +165,7 @@ class _Choice:
         return Term(name, True, "tau > 0 moves the contact that it acts on")
 
     def _plastic(self) -> Term:
-        """Without a request the cap enters where expected pressures come near the hardness."""
+        """Plan the cap: without a request it enters where expected pressures come near the hardness."""
         name, hardness = "plastic", self.pair.softer_hardness
         if (requested := self._requested(name, "excluded: elastic at any pressure")) is not None:
             return requested
@@ -177,7 +177,8 @@ class _Choice:
 
 
 def _smallest(effects_of: dict[str, float], budget: float) -> tuple[set[str], float]:
-    """The names whose effects, smallest first, add up to at most the budget; and what is left of it."""
+    """Return the names whose effects, smallest first, add up to at most the budget; and what is left of
+    it."""
     names: set[str] = set()
     for name, effect in sorted(effects_of.items(), key=lambda item: item[1]):
         if effect > budget:

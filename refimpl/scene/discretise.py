@@ -48,7 +48,7 @@ def discretise(
 
 
 def _raised(lower: Array, gap: Array, spent: Array) -> Array:
-    """``lower + gap / 2``, in the memory of heights that are no longer needed."""
+    """Return ``lower + gap / 2``, in the memory of heights that are no longer needed."""
     np.multiply(gap, 0.5, out=spent)
     spent += lower
     return spent

@@ -155,7 +155,7 @@ def _body() -> tuple[Key, ...]:
 
 
 def _of(made: type, texts: key_texts.Texts, allowed: Callable[[str], str]) -> tuple[Key, ...]:
-    """The keys of a table that becomes an instance of a dataclass."""
+    """Return the keys of a table that becomes an instance of a dataclass."""
     hints = get_type_hints(made)
     found = {f.name: f for f in fields(made) if f.init}
     _complete(made.__name__, texts, list(found))
@@ -171,7 +171,7 @@ def default_of(field: Field[Any]) -> str:
 
 
 def _complete(table: str, texts: Mapping[str, object], names: list[str]) -> Any:
-    """The texts, if they are of exactly these keys; else LookupError."""
+    """Return the texts, if they are of exactly these keys; else LookupError."""
     if set(texts) != set(names):
         raise LookupError(f"{table}: no text, or no key, for {sorted(set(texts) ^ set(names))}")
     return texts

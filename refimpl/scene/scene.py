@@ -141,7 +141,7 @@ class Scene:
         return self.size or self._covered()
 
     def _covered(self) -> tuple[float, float]:
-        """The largest rectangle (m) that all measured surfaces cover at the scene's offset."""
+        """Return the largest rectangle (m) that all measured surfaces cover at the scene's offset."""
         found = []
         for name, offset in (("lower", self._offset), ("upper", (0.0, 0.0))):
             for k, part in enumerate(self.parts(name)):
@@ -280,7 +280,8 @@ class Scene:
         return _centred("lower", lower, grid), _centred("upper", upper, grid)
 
     def _summed(self, name: str, grid: Grid, offset: tuple[float, float]) -> Array:
-        """The sum of a body's parts (m); a refusal names the part, or the field of the scene that is why."""
+        """Return the sum of a body's parts (m); a refusal names the part, or the field of the scene that is
+        why."""
         z = grid.zeros
         for k, part in enumerate(self.parts(name)):
             try:
@@ -297,7 +298,7 @@ class Scene:
 
 
 def _two(field: str, value: Any, allowed: str) -> tuple[Any, Any]:
-    """A pair of numbers from a sequence of two."""
+    """Return a pair of numbers from a sequence of two."""
     if not isinstance(value, list | tuple) or len(value) != 2:
         raise InputError(field, value, allowed)
     first, second = (float(item) if isinstance(item, np.floating) else item for item in value)
@@ -305,7 +306,7 @@ def _two(field: str, value: Any, allowed: str) -> tuple[Any, Any]:
 
 
 def _centred(name: str, heights: Array, grid: Grid) -> Array:
-    """The heights about their mid-height, in place."""
+    """Return the heights about their mid-height, in place."""
     if not np.all(np.isfinite(heights)):
         raise InputError(f"{name}.surface", "NaN or infinite heights", "finite heights in m")
     low, high = float(heights.min()), float(heights.max())

@@ -53,7 +53,7 @@ def read_tolerances(path: str | Path) -> dict[str, float]:
 
 
 def _read(name: str | Path) -> tuple[dict[str, Any], Path]:
-    """The parsed file, or shipped scene, and the folder that its paths are relative to."""
+    """Return the parsed file, or shipped scene, and the folder that its paths are relative to."""
     if not isinstance(name, str | os.PathLike):
         raise InputError("scene", name, "the path of a TOML file, or the name of a shipped scene")
     path = Path(name)
@@ -167,7 +167,7 @@ def _body_to_dict(body: Body) -> dict[str, Any]:
 
 
 def _given(made: object, keys: Iterable[str]) -> dict[str, Any]:
-    """The values of these keys, without those that are not set."""
+    """Return the values of these keys, without those that are not set."""
     values = {key: getattr(made, key) for key in keys}
     return {key: value for key, value in values.items() if value is not None}
 

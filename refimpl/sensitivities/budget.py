@@ -128,7 +128,7 @@ def _mapping(name: str, given: Mapping[str, float] | None) -> dict[str, float]:
 
 
 def _model_form(solution: Solution, derivatives: Sensitivity) -> dict[str, dict[str, float]]:
-    """Both sources for each number; infinite where the slope is beyond Appendix A's table."""
+    """Return both sources for each number; infinite where the slope is beyond Appendix A's table."""
     at = solution.details.slope_error
     wrong = None if at.at_rms is None else max(at.at_rms, at.across_at_rms or 0.0)
     cosines = _cosines(solution, derivatives)
@@ -159,7 +159,8 @@ def _half_space(
 
 
 def _plasticity(scene: Scene, solution: Solution) -> dict[str, float]:
-    """Difference of each number to the solution with capped pressures; infinite where none converges.
+    """Return the difference of each number to the solution with capped pressures; infinite where none
+    converges.
 
     Empty where no pressure exceeds the hardness, and where none is given.
     """

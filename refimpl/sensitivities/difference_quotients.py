@@ -79,7 +79,7 @@ def solved_again(
 
 
 def _stride(scene: Scene, solution: Solution, name: str, value: float) -> float:
-    """The relative step of full solves (see above).
+    """Return the relative step of full solves (see above).
 
     Numbers that deform a surface about its corner move it farthest at the other border: by no more than a
     share of its finest length.
@@ -99,7 +99,7 @@ def _stride(scene: Scene, solution: Solution, name: str, value: float) -> float:
 
 
 def _count_scatter(solution: Solution) -> float:
-    """Standard deviation of a counted area (m^2)."""
+    """Return the standard deviation of a counted area (m^2)."""
     return AREA.scatter * area_scatter(solution.details.features)
 
 

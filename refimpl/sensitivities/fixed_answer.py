@@ -78,7 +78,7 @@ def fixed_answer(
 
 
 def _changed(scene: Scene, base: Problem, changed: Scene) -> Problem:
-    """The changed scene's problem; surfaces are sampled again only where they changed."""
+    """Return the changed scene's problem; surfaces are sampled again only where they changed."""
     if changed.upper.surface is scene.upper.surface and changed.lower.surface is scene.lower.surface:
         elasticity = replace(base.elasticity, pair=changed.materials)
         return replace(base, elasticity=elasticity, friction=changed.friction, load=changed.load)

@@ -121,13 +121,13 @@ class FixedContact:
         return self._precondition(self.free.astype(np.float64))[self.free]
 
     def _unpacked(self, x: Array) -> tuple[Array, float]:
-        """Pressures on the window and approach of a vector in peaks and base approaches."""
+        """Return the pressures on the window and approach of a vector in peaks and base approaches."""
         pressure = np.zeros(self.free.shape)
         pressure[self.free] = self.peak * x[:-1]
         return pressure, self.approach * float(x[-1])
 
     def _state(self, problem: Problem, pressure: Array, approach: float) -> tuple[Array, Array, Forces]:
-        """Displacement u (m), product of cosines and forces.
+        """Return the displacement u (m), product of cosines and forces.
 
         Facet tractions take the slopes that they leave themselves, and so does plastic indentation: from the
         base state's, a few times over. Elements at the hardness bear the problem's own.

@@ -169,7 +169,7 @@ def _check(scene: Scene, solution: Solution) -> None:
 
 
 def _terms(solution: Solution) -> Terms:
-    """The solution's, with all that shear moves unless the user forces it out.
+    """Return the solution's terms, with all that shear moves unless the user forces it out.
 
     Where two bodies' compliances cancel it is left out of the solve, and comes in with the first change.
     """

@@ -83,5 +83,5 @@ def as_dataset(solution: Record, provenance: Mapping[str, str] | None = None) ->
 
 
 def _numeric(values: NDArray[Any]) -> NDArray[Any]:
-    """Masks as bytes, which NetCDF has; other arrays as they are."""
+    """Return the masks as bytes, which NetCDF has; other arrays as they are."""
     return values.astype(np.int8) if values.dtype == bool else values

@@ -71,7 +71,8 @@ def unseen_share(z: Array, periodic: bool = False) -> float:
 
 
 def _interpolation_loss(z: Array, periodic: bool) -> float:
-    """Mean square gradient of what cubics through every second point miss, over that of all points."""
+    """Return the mean square gradient of what cubics through every second point miss, over that of all
+    points."""
     missed = total = 0.0
     for values in (z, z.T):
         if len(values) < _LEAST_POINTS:
@@ -94,7 +95,7 @@ def _mean_square(values: Array) -> float:
 
 
 def _squared_gradient(z: Array, spacings: tuple[float, float], periodic: bool) -> float:
-    """Mean square of neighbouring points' differences over their distance, both axes."""
+    """Return the mean square of neighbouring points' differences over their distance, both axes."""
     total = 0.0
     for values, spacing in zip((z, z.T), spacings, strict=True):
         around = np.concatenate([values, values[: int(periodic)]])

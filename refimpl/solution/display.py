@@ -95,7 +95,7 @@ def _rows(solution: Record) -> list[tuple[str, str, str]]:
 
 
 def _map(solution: Record) -> str:
-    """Squares shaded by the pressure's maximum in each, x to the right and y up."""
+    """Return the squares shaded by the pressure's maximum in each, x to the right and y up."""
     coarse = _coarse(solution.pressure)
     top = coarse.max()
     columns, rows = coarse.shape
@@ -115,7 +115,7 @@ def _map(solution: Record) -> str:
 
 
 def _coarse(pressure: Array) -> Array:
-    """Maximum pressure in each cell of at most `_CELLS` along the longer side."""
+    """Return the maximum pressure in each cell of at most `_CELLS` along the longer side."""
     step = max(1, math.ceil(max(pressure.shape) / _CELLS))
     rest = [(0, -count % step) for count in pressure.shape]
     padded = np.pad(pressure, rest)

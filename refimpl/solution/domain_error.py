@@ -37,7 +37,7 @@ def unseen_parts(problem: Problem, state: State, scene: Scene | None) -> Uncerta
 
 
 def _outside(problem: Problem, state: State, scene: Scene) -> float:
-    """Share of the contact that the domain cuts off; infinite from half of it on.
+    """Return the share of the contact that the domain cuts off; infinite from half of it on.
 
     The contact is taken to go on over an area like the domain's, as dense as along the border.
     """
@@ -48,7 +48,7 @@ def _outside(problem: Problem, state: State, scene: Scene) -> float:
 
 
 def _by_area(problem: Problem, state: State, share: float) -> dict[str, float]:
-    """Shares of the numbers that move with the contact area; of mu tau's part moves."""
+    """Return the shares of the numbers that move with the contact area; of mu tau's part moves."""
     per_area = friction_per_area(problem.friction, state.forces.normal)
     mu = state.friction_coefficient
     of_mu = min(per_area * state.contact_area / mu, 1.0) if mu > 0 else 0.0

@@ -97,7 +97,8 @@ def roughness_slope(scene: Scene, grid: Grid) -> float:
 
 
 def _plasticity(evidence: Evidence) -> ModelWarning | None:
-    """Eq. (12): ``2.2 rms / length`` is the rms slope of Eq. (9)'s roughness (``sqrt(4.6) = 2.14``)."""
+    """Warn by Eq. (12): ``2.2 rms / length`` is the rms slope of Eq. (9)'s roughness (``sqrt(4.6) =
+    2.14``)."""
     pair = evidence.problem.pair
     hardness = pair.softer_hardness
     if hardness is None or evidence.problem.terms.plastic:
@@ -150,7 +151,7 @@ def _law(evidence: Evidence) -> Notice | None:
 
 
 def _adhesion(evidence: Evidence) -> Notice | None:
-    """The work of adhesion whose pull-off force of a smooth ball, ``1.5 pi w R`` (JKR), is the load."""
+    """Note the work of adhesion whose pull-off force of a smooth ball, ``1.5 pi w R`` (JKR), is the load."""
     scene, load = evidence.scene, evidence.problem.load
     if not load or scene.curvature <= 0:
         return None
@@ -177,7 +178,8 @@ def _slopes(evidence: Evidence) -> list[ModelWarning | None]:
 
 
 def _error_at_slopes(evidence: Evidence) -> SlopeError:
-    """As quoted by the solution; where the user excluded the slope terms, that of the deformed surfaces."""
+    """Return the error as quoted by the solution; where the user excluded the slope terms, that of the
+    deformed surfaces."""
     term = evidence.plan.term("oblique")
     if term.included or term.negligible:
         return evidence.slope_error
@@ -191,7 +193,7 @@ def _error_at_slopes(evidence: Evidence) -> SlopeError:
 
 
 def _slope(limit: Limit, slope: float, in_line: float | None, across: float | None) -> ModelWarning | None:
-    """``across`` is None for plane problems."""
+    """Warn by both slopes; ``across`` is None for plane problems."""
     largest = math.inf if in_line is None else max(in_line, across or 0.0)
     if largest <= _COEFFICIENT_ERROR:
         return None
@@ -225,7 +227,7 @@ def _border(evidence: Evidence) -> ModelWarning | None:
 
 
 def _expected_size(evidence: Evidence) -> str:
-    """By Hertz, of the paraboloids alone under the load; their contact goes on beyond the border."""
+    """Estimate by Hertz, of the paraboloids alone under the load; their contact goes on beyond the border."""
     scene, problem = evidence.scene, evidence.problem
     if not scene.continues or not problem.load or scene.curvature < 0:
         return ""
@@ -236,7 +238,7 @@ def _expected_size(evidence: Evidence) -> str:
 
 
 def _is_concave(body: Body, sign: int) -> bool:
-    """Whether its paraboloids together are hollow: a positive radius below, a negative one above."""
+    """Return whether its paraboloids together are hollow: a positive radius below, a negative one above."""
     return sign * sum(1 / part.radius for part in body.surface.parts if isinstance(part, Sphere)) > 0
 
 
@@ -255,7 +257,7 @@ def _correlation(evidence: Evidence) -> ModelWarning | None:
 
 
 def _data(evidence: Evidence) -> ModelWarning | None:
-    """Measured heights and arrays are sampled, not averaged."""
+    """Warn that measured heights and arrays are sampled, not averaged."""
     points = max(evidence.problem.grid.spacings) / (evidence.scene.pitch or math.inf)
     text = (
         f"{points:.2g} points of a surface's data per element: points between the elements' centres are not "
@@ -265,7 +267,7 @@ def _data(evidence: Evidence) -> ModelWarning | None:
 
 
 def _radius(evidence: Evidence) -> ModelWarning | None:
-    """Mean radius of circles; full contact has no edge to resolve."""
+    """Warn by the mean radius of circles; full contact has no edge to resolve."""
     contact, grid = evidence.state.contact, evidence.problem.grid
     if contact.all():
         return None
@@ -289,7 +291,7 @@ def _active_set(evidence: Evidence) -> ModelWarning | None:
 
 
 def _neglected(evidence: Evidence) -> list[ModelWarning | None]:
-    """Neglected terms whose effect, estimated again from the solution, exceeds the demand.
+    """Return the neglected terms whose effect, estimated again from the solution, exceeds the demand.
 
     Without friction the plan may allow more than the demand: a share of the grid's own error.
     """

@@ -99,7 +99,7 @@ def _surface(name: str, scene: Scene) -> Iterator[str]:
 
 
 def _index(scene: Scene, plan: Plan) -> Iterator[str]:
-    """The plasticity index of Eq. (12), by the expected contact's slopes of random roughness."""
+    """Yield the plasticity index of Eq. (12), by the expected contact's slopes of random roughness."""
     bodies = (scene.lower.material, scene.upper.material)
     hardness = min((m.hardness for m in bodies if m.hardness is not None), default=None)
     squares = 0.0

@@ -31,7 +31,8 @@ def own_parts(solution: Numbers, quantity: Quantity) -> float | None:
 
 
 def _mean_pressure_error(solution: Numbers, quantity: Quantity) -> float | None:
-    """The force on the area: ``(P + dP) / (A - dA) - P / A``, with dP / P of N; unbounded where A is."""
+    """Return the force on the area: ``(P + dP) / (A - dA) - P / A``, with dP / P of N; unbounded where A
+    is."""
     area, force = solution.error("contact_area"), solution.error("normal_force")
     if area is None or force is None:
         return None
@@ -41,7 +42,7 @@ def _mean_pressure_error(solution: Numbers, quantity: Quantity) -> float | None:
 
 
 def _plastic_share_error(solution: Numbers, quantity: Quantity) -> float | None:
-    """``(A_p + dA_p) / (A - dA) - A_p / A``, and no more than a share leaves."""
+    """Return ``(A_p + dA_p) / (A - dA) - A_p / A``, and no more than a share leaves."""
     area, plastic = solution.error("contact_area"), solution.error("plastic_area")
     if area is None or plastic is None or not plastic + solution.plastic_area:
         return plastic
@@ -51,13 +52,13 @@ def _plastic_share_error(solution: Numbers, quantity: Quantity) -> float | None:
 
 
 def _area_share_error(solution: Numbers, quantity: Quantity) -> float | None:
-    """That of A over A0, which is exact."""
+    """Return the bar of A over A0, which is exact."""
     area = solution.error("contact_area")
     return None if area is None else area / solution.details.grid.nominal_area
 
 
 def _mean_gap_error(solution: Numbers, quantity: Quantity) -> float | None:
-    """That of the bodies' distance, and the share of the displacements by which N is uncertain.
+    """Return the bar of the bodies' distance, and the share of the displacements by which N is uncertain.
 
     The distance is open as the approach is; mean displacements are in proportion to N and less than the
     approach. Judged on 16 scenes of the kinds of the error bars on 48 and 96 against 384: all 32 covered, the
@@ -70,13 +71,13 @@ def _mean_gap_error(solution: Numbers, quantity: Quantity) -> float | None:
 
 
 def _mean(pressure: Array) -> float:
-    """Of the elements in contact; 0 without contact."""
+    """Average over the elements in contact; 0 without contact."""
     touching = pressure[pressure > 0]
     return float(touching.mean()) if touching.size else 0.0
 
 
 def _elastic_friction(details: Details) -> float:
-    """The part of Eq. (3) that is not local friction: ``sum f sin(theta_x) cos(theta_y) dA``."""
+    """Return the part of Eq. (3) that is not local friction: ``sum f sin(theta_x) cos(theta_y) dA``."""
     slopes = details.state.slopes
     return float((details.state.pressure * slopes.sin_x * slopes.cos_y).sum()) * details.grid.element_area
 

@@ -124,7 +124,7 @@ class Solution(Record):
 
 
 def _dimensions(grid: Grid) -> dict[str, Any]:
-    """The grid's numbers for JSON: one number for both sides of a square, else two."""
+    """Return the grid's numbers for JSON: one number for both sides of a square, else two."""
     square = grid.lengths[0] == grid.lengths[1]
     lengths = {"side": grid.lengths[0]} if square else {"size": list(grid.lengths)}
     same = square and grid.shape[0] == grid.shape[1]

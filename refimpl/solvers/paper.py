@@ -80,7 +80,7 @@ def solve_paper(problem: Problem, tolerance: float, counter: Counter) -> tuple[S
 
 
 def _refinements(problem: Problem) -> list[Problem]:
-    """The problem on M/4, M/2 and M elements per side, as far as they divide (128, 256, 512)."""
+    """Return the problem on M/4, M/2 and M elements per side, as far as they divide (128, 256, 512)."""
     levels = [problem]
     while len(levels) < 3 and all(n % 2 == 0 and n >= 32 for n in levels[0].grid.shape):
         n, m = levels[0].grid.shape
@@ -91,7 +91,7 @@ def _refinements(problem: Problem) -> list[Problem]:
 
 
 def _interpolated(coarse: Array) -> Array:
-    """Cubic interpolation to the twice finer element centres; negative overshoot is cut off."""
+    """Return the cubic interpolation to the twice finer element centres; negative overshoot is cut off."""
     at = ((np.arange(2 * n) + 0.5) / 2 - 0.5 for n in coarse.shape)
     fine: Array = scipy.ndimage.map_coordinates(
         coarse, np.meshgrid(*at, indexing="ij"), order=3, mode="nearest"
@@ -231,7 +231,7 @@ class _Scheme:
         return inner(weights, self.pressure) * problem.grid.element_area - offset
 
     def _update(self, approach: float, active: ActiveSet) -> tuple[Array, Array]:
-        """Slopes; returned are all displacements but ``a f`` (m), and the shear offset (Pa)."""
+        """Return the slopes; returned are all displacements but ``a f`` (m), and the shear offset (Pa)."""
         law, normal = self.problem.friction, self._apply(self.pressure)
         v = self.slopes.per_cosine_product(normal + self._shear) + self.problem.gap
         self._clearance = v - approach
@@ -245,7 +245,8 @@ class _Scheme:
         return self._clearance
 
     def _iterate(self, u: Array, inside: Mask, *, on_circle: bool) -> Mask:
-        """(1b) periodic inversion, or (1c) residual correction, with (1b') exclusion; the contact left."""
+        """Run (1b) periodic inversion, or (1c) residual correction, with (1b') exclusion; the contact
+        left."""
         flexibility = self._apply_periodic if on_circle else self._apply
         pressure = self.pressure * inside
         answer = flexibility(pressure)

@@ -123,7 +123,7 @@ class GaussianRoughness(Surface):
         return self._field(grid.x + offset[0], grid.y + offset[1], grid) * self._scale(grid)
 
     def _field(self, x: Array, y: Array, grid: Grid) -> Array:
-        """Ensemble heights (m) at all pairs of ``x``, ``y``."""
+        """Return the ensemble heights (m) at all pairs of ``x``, ``y``."""
         if grid.periodic:
             self._refuse_longer(grid.lengths)
             if not self.ellipse.is_isotropic:
@@ -139,7 +139,7 @@ class GaussianRoughness(Surface):
         return NoiseLattice(self.ellipse, self._refused)
 
     def _waves(self, x: Array, y: Array, grid: Grid) -> Array:
-        """Periodic heights (m) of two lengths."""
+        """Return periodic heights (m) of two lengths."""
         lattice = self._wave_lattice(grid)
         scale = self.rms / math.sqrt(lattice.mean_squares(self._amplitude)[0])
         return scale * lattice.field(self._amplitude, self.seed, x, y)
@@ -149,7 +149,7 @@ class GaussianRoughness(Surface):
         return PeriodicLattice.holding(grid.lengths, (along_x, along_y), self._refused)
 
     def _amplitude(self, qx: Array, qy: Array) -> Array:
-        """Root of Eq. (9)'s transform over its peak."""
+        """Return the root of Eq. (9)'s transform over its peak."""
         along, across = rotated(qx, qy, self.lay)
         lx, ly = self.ellipse.along, self.ellipse.across
         return np.asarray(np.exp(-((lx * along) ** 2 + (ly * across) ** 2) / (8.0 * DECAY)))
@@ -170,8 +170,8 @@ class GaussianRoughness(Surface):
         return self.rms / self._realised_rms(grid) if self.normalise else 1.0
 
     def _realised_rms(self, grid: Grid) -> float:
-        """Standard deviation (m) of the unscaled field over the domain: Gauss-Legendre with 10 points on each
-        panel of at most half a correlation length (error < 1e-12, by halving the panels)."""
+        """Return the standard deviation (m) of the unscaled field over the domain: Gauss-Legendre with 10
+        points on each panel of at most half a correlation length (error < 1e-12, by halving the panels)."""
         lengths = self.ellipse.on_axes
         for side, length in zip(grid.lengths, lengths, strict=True):
             if side < length:
@@ -228,7 +228,7 @@ class GaussianRoughness(Surface):
 
 
 def _lengths(given: object) -> float | tuple[float, float]:
-    """The correlation length, or both, as doubles."""
+    """Return the correlation length, or both, as doubles."""
     if isinstance(given, list | tuple):
         if len(given) != 2:
             raise InputError("correlation_length", given, _ALLOWED_LENGTH)
@@ -238,12 +238,12 @@ def _lengths(given: object) -> float | tuple[float, float]:
 
 
 def _panels(side: float, length: float) -> int:
-    """Number of panels, of at most half a length, along one side."""
+    """Return the number of panels, of at most half a length, along one side."""
     return math.ceil(2.0 * side / length)
 
 
 def _quadrature(side: float, length: float) -> tuple[Array, Array]:
-    """Quadrature points (m) and weights, which add up to 1, along one side."""
+    """Return the quadrature points (m) and weights, which add up to 1, along one side."""
     panels = _panels(side, length)
     node, weight = np.polynomial.legendre.leggauss(_POINTS)
     points = ((np.arange(panels)[:, None] + (node + 1.0) / 2.0) * (side / panels)).ravel()

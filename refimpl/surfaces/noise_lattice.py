@@ -67,7 +67,7 @@ class NoiseLattice:
     def _sheared(
         self, seed: int, x: Array, shift: Array, nodes_y: range, smooth_y: scipy.sparse.csr_array
     ) -> Array:
-        """The sum at ``x_i + shift_j``."""
+        """Return the sum at ``x_i + shift_j``."""
         ends = np.array([x.min() + shift.min(), x.max() + shift.max()])
         nodes_x, _ = self.smoothing(ends, 0)
         rows = smooth_y @ white_noise(seed, nodes_x, nodes_y).T
@@ -93,7 +93,7 @@ class NoiseLattice:
         return nodes, scipy.sparse.csr_array(entries, shape=(len(x), len(nodes)))
 
     def _kernel(self, x: Array, axis: int, period: float | None) -> tuple[NDArray[np.int64], Array]:
-        """The nodes that each point sums over, and their weights."""
+        """Return the nodes that each point sums over, and their weights."""
         length = self.ellipse.sheared[2 * axis]
         h = _spacing(length, period)
         reach = math.ceil(HALF_WIDTH * length / h)
@@ -123,6 +123,7 @@ def _spacing(length: float, period: float | None) -> float:
 
 
 def _images(ratio: float) -> float:
-    """``sum over m of exp(-2.3 (m side / l)^2)``, ratio = side / l >= 1: one axis's variance with images."""
+    """Return ``sum over m of exp(-2.3 (m side / l)^2)``, ratio = side / l >= 1: one axis's variance with
+    images."""
     m = np.arange(1, 6)  # the sixth image would add exp(-2.3 * 36) = 1e-36
     return float(1.0 + 2.0 * np.exp(-DECAY * (m * ratio) ** 2).sum())

@@ -145,7 +145,7 @@ class SelfAffineRoughness(Surface):
         return np.asarray(plateau * self._shape(np.asarray(q, dtype=float)))
 
     def _shape(self, q: Array) -> Array:
-        """The PSD over its plateau."""
+        """Return the PSD over its plateau."""
         low, roll, high = (2.0 * math.pi / wave for wave in (self.long_cut, self.roll_off, self.short_cut))
         inside = (q >= low * (1.0 - ROUNDING)) & (q <= high * (1.0 + ROUNDING))
         return np.where(inside, (np.maximum(q, roll) / roll) ** (-2.0 - 2.0 * self.hurst), 0.0)
@@ -193,7 +193,7 @@ class SelfAffineRoughness(Surface):
         return PeriodicLattice.holding((a * period, b * period), shortest, self._refused, shear)
 
     def _amplitude(self, qx: Array, qy: Array) -> Array:
-        """Root of the PSD over its plateau."""
+        """Return the root of the PSD over its plateau."""
         along, across = rotated(qx, qy, self.lay)
         return np.sqrt(self._shape(np.hypot(self.anisotropy * along, across)))
 
@@ -218,8 +218,8 @@ class SelfAffineRoughness(Surface):
         return 1.0 - math.sqrt(seen / slope), 1.0 - math.sqrt(bent / curvature)
 
     def _quadrature(self, spacing: float) -> tuple[Array, Array]:
-        """Points q (rad/m) and weights of an integral over log q: ten Gauss points on panels of an eighth of
-        an octave or, where that is shorter, of half an oscillation of the Bessel functions."""
+        """Return the points q (rad/m) and weights of an integral over log q: ten Gauss points on panels of an
+        eighth of an octave or, where that is shorter, of half an oscillation of the Bessel functions."""
         ends = [2.0 * math.pi / wave for wave in (self.long_cut, self.roll_off, self.short_cut)]
         node, weight = np.polynomial.legendre.leggauss(10)
         points, weights = [], []

@@ -54,6 +54,7 @@ class Sphere(Surface):
 
 
 def _from_centre(grid: Grid, axis: int) -> Array:
-    """Element centres from the domain's centre (m), symmetric to the last bit: ``(2 i + 1 - M) h / 2``."""
+    """Return the element centres from the domain's centre (m), symmetric to the last bit: ``(2 i + 1 - M) h /
+    2``."""
     count = grid.shape[axis]
     return np.asarray((2.0 * np.arange(count) + 1.0 - count) * (grid.spacings[axis] / 2.0))

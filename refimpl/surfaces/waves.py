@@ -120,12 +120,12 @@ class PeriodicLattice:
         return np.arange(-self.waves[1], self.waves[1] + 1.0)
 
     def _strips(self) -> Iterator[Array]:
-        """The wave numbers k from 0 up, a strip at a time."""
+        """Yield the wave numbers k from 0 up, a strip at a time."""
         for first in range(0, self.waves[0] + 1, _STRIP):
             yield np.arange(first, min(first + _STRIP, self.waves[0] + 1), dtype=float)
 
     def _noise(self, seed: int, k: Array) -> tuple[Array, Array]:
-        """The noise of the waves ``(k, l)`` and ``(-k, -l)`` of a strip."""
+        """Return the noise of the waves ``(k, l)`` and ``(-k, -l)`` of a strip."""
         first, last, L = int(k[0]), int(k[-1]), self.waves[1]
         across = range(-L, L + 1)
         ahead = white_noise(seed, range(first, last + 1), across, STREAM)
@@ -140,7 +140,7 @@ def rotated(qx: Array, qy: Array, lay: float) -> tuple[Array, Array]:
 
 
 def _interpolation(turns: Array, waves: int) -> tuple[int, scipy.sparse.csr_array]:
-    """Points of the period, and the matrix that interpolates from them at positions in periods."""
+    """Return the points of the period, and the matrix that interpolates from them at positions in periods."""
     N = 2 * scipy.fft.next_fast_len(2 * waves + 1 + _WIDTH, real=True)
     position = (turns - np.floor(turns)) * N
     point = np.floor(position).astype(np.int64)[:, None] + np.arange(1 - _WIDTH // 2, 1 + _WIDTH // 2)
@@ -151,6 +151,6 @@ def _interpolation(turns: Array, waves: int) -> tuple[int, scipy.sparse.csr_arra
 
 
 def _deconvolution(wave: Array, N: int) -> Array:
-    """The inverse of the kernel's transform at wave numbers ``|k| < N / 4``."""
+    """Return the inverse of the kernel's transform at wave numbers ``|k| < N / 4``."""
     root = np.sqrt(_SHAPE**2 - (math.pi * _WIDTH / N * wave) ** 2)
     return np.asarray(root / (-np.expm1(-2.0 * root)) * 2.0 * np.exp(_SHAPE - root) / _WIDTH)

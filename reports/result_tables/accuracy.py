@@ -75,7 +75,7 @@ def costs(benchmarks: Mapping[str, Any]) -> str:
 
 
 def _median(row: Mapping[str, Any] | None) -> float | None:
-    """The median of the seconds of a benchmark's row; None for a code that was not timed."""
+    """Return the median of the seconds of a benchmark's row; None for a code that was not timed."""
     return None if row is None or "seconds" not in row else row["seconds"]["median"]
 
 

@@ -39,7 +39,7 @@ def table_3(reproduction: Mapping[str, Any]) -> str:
 
 
 def _scaled(case: Case, key: str) -> str:
-    """Value or reference in the printed unit; nothing for cases without a reference."""
+    """Return the value or reference in the printed unit; nothing for cases without a reference."""
     return "" if case["reference"] is None else f"{unit_of(case)[1] * case[key]:.7g}"
 
 

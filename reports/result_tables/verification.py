@@ -45,7 +45,7 @@ def studies(documents: Mapping[str, Any]) -> str:
 
 
 def _searches(documents: Mapping[str, Any]) -> Iterator[Row]:
-    """Rows of searches for inputs that are answered wrongly."""
+    """Yield the rows of searches for inputs that are answered wrongly."""
     found = documents["extremes"]["counts"]
     yield (
         "extreme inputs",

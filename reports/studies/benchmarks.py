@@ -62,7 +62,7 @@ def _table(kind: str, newest: Mapping[tuple[str, int], Sequence[Row]]) -> Table:
 
 
 def _measured(column: Callable[[Row], Cell]) -> Callable[[Row], Cell]:
-    """The column, and None for a code that was not timed."""
+    """Return the column, and None for a code that was not timed."""
     return lambda row: column(row) if "seconds" in row else None
 
 
@@ -94,7 +94,7 @@ TIMES: dict[str, Column] = {
 
 
 def _seconds(kind: str, newest: Mapping[tuple[str, int], Sequence[Row]]) -> tuple[Figure, Data]:
-    """Median seconds over the grid, a curve for each code; this code's terms are in the tables."""
+    """Return the median seconds over the grid, a curve for each code; this code's terms are in the tables."""
     timed = [row for (of, _), rows in newest.items() if of == kind for row in rows if "seconds" in row]
     codes = list(dict.fromkeys(row["code"] for row in timed if not row["code"].startswith(f"{OURS}+")))
     grids = sorted({row["M"] for row in timed})

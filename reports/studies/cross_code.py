@@ -68,7 +68,8 @@ def _verdict(row: Row, metric: str) -> str:
 
 
 def _share(row: Row, metric: str) -> float | None:
-    """Error over tolerance; for a figure of merit the other way round. None where nothing was measured."""
+    """Return the error over tolerance; for a figure of merit the other way round. None where nothing was
+    measured."""
     error, tolerance = row["error"], row["tolerance"]
     if error is None:
         return None

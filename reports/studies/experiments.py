@@ -24,7 +24,7 @@ COLUMNS: dict[str, Column] = {
 
 
 def _rounded(row: Mapping[str, float], key: str, sign: str = "") -> str:
-    """A number with the decimals of U_val's two digits."""
+    """Return a number with the decimals of U_val's two digits."""
     return f"{row[key]:{sign}.{decimals(row['uncertainty'])}f}"
 
 
@@ -94,7 +94,7 @@ def _data(one: dict[str, Any]) -> Data:
 
 
 def _figure(one: dict[str, Any]) -> Figure:
-    """Measured and predicted numbers over the measured one."""
+    """Return the measured and predicted numbers over the measured one."""
 
     def draw(canvas: Canvas, data: Data) -> None:
         axes, places = canvas.add_subplot(), np.arange(len(data["at"]))

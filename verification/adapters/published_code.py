@@ -72,7 +72,7 @@ class PublishedCode:
         return identity.of_distribution(self.distribution)
 
     def __call__(self, problem: ContactProblem) -> PublishedAnswer:
-        """The peer's answer.
+        """Return the peer's answer.
 
         Raises `Unavailable` where the peer is not installed and `Unsupported` where it cannot pose the
         problem.
@@ -108,7 +108,8 @@ def closure(problem: ContactProblem) -> float:
 
 
 def _flattening(problem: ContactProblem) -> float:
-    """Elastic energy (J) of a periodic surface in full contact: pressures ``E* q/2`` times its waves."""
+    """Return the elastic energy (J) of a periodic surface in full contact: pressures ``E* q/2`` times its
+    waves."""
     x, y = (2 * np.pi * np.fft.fftfreq(n, d) for n, d in zip(problem.shape, problem.spacings, strict=True))
     wave = np.hypot(x[:, None], y)
     pressure = np.fft.ifft2(np.fft.fft2(problem.gap) * wave * (0.5 * problem.reduced_modulus)).real

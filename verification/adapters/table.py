@@ -63,7 +63,7 @@ class Watched:
         return abilities_of(self.solver)
 
     def __call__(self, problem: ContactProblem) -> Answer:
-        """The solver's answer, unchanged."""
+        """Return the solver's answer, unchanged."""
         start = time.perf_counter()
         answer = self.solver(problem)
         self.seconds.append(time.perf_counter() - start)
@@ -144,7 +144,7 @@ def summarised(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _short(value: Any) -> Any:
-    """Four digits of a number: no report shows more."""
+    """Return the four digits of a number: no report shows more."""
     return float(f"{value:.4g}") if isinstance(value, float) else value
 
 

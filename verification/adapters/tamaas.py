@@ -66,7 +66,7 @@ def press(problem: ContactProblem, *, second_step: bool = True) -> PublishedAnsw
 
 
 def _saturated(problem: ContactProblem, unit: float) -> PublishedAnswer:
-    """Pressures up to the hardness; ``unit`` (Pa) is that of moduli and pressures: E* to be right.
+    """Return the pressures up to the hardness; ``unit`` (Pa) is that of moduli and pressures: E* to be right.
 
     Raises `Unsupported` for an approach: the solver takes loads.
     """

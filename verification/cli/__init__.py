@@ -157,7 +157,7 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 
 def _end_in_order() -> None:
-    """Interrupts raise, so that no temporary file stays; no text fails on standard output's encoding."""
+    """Make interrupts raise, so that no temporary file stays; no text fails on standard output's encoding."""
     started = threading.current_thread() is threading.main_thread()
     if started and signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # by `verification.start`
         signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -192,7 +192,7 @@ def wedge(options: argparse.Namespace) -> int:
 
 
 def _refuse_angles(options: argparse.Namespace) -> None:
-    """In degrees, as they were typed, what `appendix_a.wedge` would refuse in radians."""
+    """Refuse in degrees, as typed, what `appendix_a.wedge` would refuse in radians."""
     if not 0 <= options.gamma_deg < 90:
         raise refusal("--gamma-deg", options.gamma_deg, "a slope angle of 0 to below 90 degrees")
     face = 90 - options.gamma_deg
@@ -214,7 +214,8 @@ def _progress(total: int, text: str) -> Iterator[Callable[..., None]]:
 
 @contextmanager
 def _by_option(**other: tuple[str, object, str]) -> Iterator[None]:
-    """Refusals of `appendix_a` name the option; ``other`` has name, value and what is allowed by field."""
+    """Make refusals of `appendix_a` name the option; ``other`` has name, value and what is allowed by
+    field."""
     from appendix_a.errors import InputError
 
     try:

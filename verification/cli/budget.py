@@ -57,7 +57,7 @@ def table(budgets: Budgets) -> str:
 
 
 def _in_words(budgets: Budgets) -> str:
-    """Each number with its total in its unit, what that leaves out, and what it does not know."""
+    """Return each number with its total in its unit, what that leaves out, and what it does not know."""
     found = []
     for number, part in budgets.numbers.items():
         quantity = QUANTITIES[number]
@@ -75,8 +75,8 @@ def _in_words(budgets: Budgets) -> str:
 
 
 def _undetermined(budgets: Budgets) -> list[str]:
-    """Parameters with a tolerance whose derivative's bar is as long as itself, and would count in the input
-    part of mu."""
+    """Return the parameters with a tolerance whose derivative's bar is as long as itself, and would count in
+    the input part of mu."""
     number = "friction_coefficient_corrected"
     derivative, scatter = budgets.derivatives.derivatives[number], budgets.derivatives.scatter[number]
     least = 0.1 * budgets.numbers[number].input
@@ -102,14 +102,14 @@ def _parts(part: Budget) -> dict[str, object]:
 
 
 def _share(part: Budget, width: float | None) -> str:
-    """A half-width in per cent of the number; "-" for none stated or a number of zero."""
+    """Return a half-width in per cent of the number; "-" for none stated or a number of zero."""
     if width is None or part.value == 0:
         return "-"
     return f"{100 * width / abs(part.value):.2g}" if math.isfinite(width) else "unbounded"
 
 
 def _relative(budgets: Budgets, number: str, name: str) -> str:
-    """With its 95 % half-width where that is a tenth of it or more."""
+    """Print the change with its 95 % half-width where that is a tenth of it or more."""
     found, answers = budgets.derivatives.found[number], budgets.derivatives
     if found == 0:
         return "-"

@@ -55,7 +55,7 @@ def surface(options: argparse.Namespace) -> int:
 
 
 def _posed(options: argparse.Namespace) -> tuple[Scene, str]:
-    """The scene, and what was assumed where a surface's file is all there is."""
+    """Return the scene, and what was assumed where a surface's file is all there is."""
     import refimpl
     from refimpl.sensitivities.surface_verdict import pressed_on_a_flat
 

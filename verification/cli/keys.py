@@ -101,7 +101,7 @@ def _tables() -> Tables:
 
 
 def _table(found: Mapping[str, list[Key]]) -> str:
-    """The keys for a terminal, without the meanings' marks of code."""
+    """Return the keys for a terminal, without the meanings' marks of code."""
     parts = []
     for title, keys in found.items():
         if keys:

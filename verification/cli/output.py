@@ -73,7 +73,7 @@ def check_workers(option: str, count: int) -> None:
 
 
 def _one_file(path: Path, other: Path) -> bool:
-    """Whether both names lead to one file, or would; links and hard links do."""
+    """Return whether both names lead to one file, or would; links and hard links do."""
     if os.path.realpath(path) == os.path.realpath(other):
         return True
     return os.path.isfile(path) and os.path.isfile(other) and os.path.samefile(path, other)

@@ -77,7 +77,7 @@ def hertz_of(scene: Scene, load: float) -> HertzSphere | None:
 
 
 def _panels(height: float) -> tuple[Figure, dict[str, Axes]]:
-    """A figure and its panels by name: two columns, from below, maps of this height (inches)."""
+    """Return a figure and its panels by name: two columns, from below, maps of this height (inches)."""
     import matplotlib.pyplot as plt
 
     rows = (  # names, height of the row, height of its left panel, which is at the row's top
@@ -116,7 +116,7 @@ def _with_bar(solution: Solution, name: str) -> str:
 
 
 def _key(axes: Axes, solution: Solution, view: View, hertz: HertzSphere | None) -> None:
-    """Whole domain where the maps show a part of it, numbers, and meaning of lines and colours."""
+    """Draw the whole domain where the maps show a part of it, numbers, and meaning of lines and colours."""
     axes.axis("off")
     if not view.whole:
         domain_map(axes.inset_axes((-0.08, 0.56, 0.44, 0.40)), solution, view)

@@ -67,7 +67,7 @@ def draw_sweep(found: Curves, x: str, y: str, by: str | None, path: Path) -> Non
 
 
 def _plain_decades(axis: Axis) -> None:
-    """Ticks at 1, 2, 5 of each decade, as plain numbers; no labels between them."""
+    """Set the ticks at 1, 2, 5 of each decade, as plain numbers; no labels between them."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
@@ -106,7 +106,7 @@ def _entry(by: str | None, value: object) -> str | None:
 
 
 def _caption(found: Curves) -> str:
-    """What bars and bands are, and how many error bars are unbounded."""
+    """Return what bars and bands are, and how many error bars are unbounded."""
     points = [point for curve in found.values() for point in curve]
     most = max((point.realisations for point in points), default=0)
     unbounded = sum(1 for point in points if math.isinf(point.error))
@@ -143,7 +143,7 @@ def _fit(axes: Axes, found: Identification) -> None:
 
 
 def _region(axes: Axes, found: Identification) -> None:
-    """The joint 95 % ellipse about the optimum without bounds, within the bounds, and both intervals.
+    """Draw the joint 95 % ellipse about the optimum without bounds, within the bounds, and both intervals.
 
     An interval without an upper end is drawn to the edge of the ellipse.
     """
@@ -183,6 +183,6 @@ def _residuals(axes: Axes, found: Identification) -> None:
 
 
 def _loads(axes: Axes, loads: list[float]) -> None:
-    """A logarithmic axis with plain numbers: 1, 2, 5 and their decades within the loads."""
+    """Make a logarithmic axis with plain numbers: 1, 2, 5 and their decades within the loads."""
     axes.set(xscale="log", xlabel="load (N)", xlim=(0.9 * min(loads), 1.1 * max(loads)))
     _plain_decades(axes.xaxis)

@@ -151,7 +151,7 @@ def _sides(first: Sequence[int], last: Sequence[int], spacings: tuple[float, flo
 def _widened(
     first: Sequence[int], last: Sequence[int], shape: tuple[int, int], spacings: tuple[float, float]
 ) -> tuple[tuple[int, int], tuple[int, int]]:
-    """The ranges with a margin; the shorter side is a third of the longer, where the domain allows."""
+    """Return the ranges with a margin; the shorter side is a third of the longer, where the domain allows."""
     sides = _sides(first, last, spacings)
     margin = MARGIN * max(sides)
     least = (max(sides) + 2 * margin) / SLENDEREST
@@ -248,7 +248,7 @@ def outline(axes: Axes, where: Mask, view: View, colour: str) -> None:
 def _image(
     axes: Axes, values: Array, view: View, colours: str, *, lowest: bool = False, **limits: Any
 ) -> Any:
-    """A field over the window; zeros of pressure and shear are left white."""
+    """Return a field over the window; zeros of pressure and shear are left white."""
     import numpy as np
 
     blocks, step = pooled(values, lowest=lowest)
@@ -277,13 +277,13 @@ def _show(axes: Axes, picture: NDArray[Any], step: int, view: View, **options: A
 
 
 def _bar(axes: Axes, image: Any, title: str, extend: str = "neither") -> None:
-    """A colour bar as tall as the map; its quantity and unit are the map's title."""
+    """Draw a colour bar as tall as the map; its quantity and unit are the map's title."""
     axes.figure.colorbar(image, cax=axes.inset_axes((1.03, 0.0, 0.05, 1.0)), extend=extend)
     axes.set_title(title, loc="left")
 
 
 def _coloured(where: Mask, colour: str) -> Array:
-    """An image of the marked elements in one colour, transparent elsewhere."""
+    """Return an image of the marked elements in one colour, transparent elsewhere."""
     import numpy as np
     from matplotlib.colors import to_rgb
 
@@ -293,7 +293,7 @@ def _coloured(where: Mask, colour: str) -> Array:
 
 
 def _arrow(axes: Axes, direction: float) -> None:
-    """Direction in which the upper body slides, above the map's right end."""
+    """Draw the direction in which the upper body slides, above the map's right end."""
     from matplotlib.text import OffsetFrom
 
     half = 9.0  # points, of the arrow's length

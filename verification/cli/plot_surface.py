@@ -100,7 +100,7 @@ def draw_local_error(verdict: SurfaceVerdict, path: Path) -> None:
 
 
 def _error_map(axes: Axes, verdict: SurfaceVerdict) -> None:
-    """Error in percent, the contact outlined, elements beyond the tables in grey."""
+    """Draw the error in percent, the contact outlined, elements beyond the tables in grey."""
     import numpy as np
 
     grid = verdict.solution.grid
@@ -125,7 +125,7 @@ def _error_map(axes: Axes, verdict: SurfaceVerdict) -> None:
 
 
 def _error_profile(axes: Axes, verdict: SurfaceVerdict) -> None:
-    """Largest error across the longer side, where contact is, and the paper's 2 %."""
+    """Draw the largest error across the longer side, where contact is, and the paper's 2 %."""
     import numpy as np
 
     grid = verdict.solution.grid

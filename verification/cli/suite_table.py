@@ -66,7 +66,7 @@ def text_of(suffix: str, entries: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _csv(entries: Sequence[Mapping[str, Any]]) -> str:
-    """A row for each code and case: all numbers."""
+    """Return a row for each code and case: all numbers."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(COLUMNS)
@@ -123,7 +123,7 @@ NOTE = "Verdicts with the error as a share of the tolerance; up to 1 is a pass, 
 
 
 def _escaped(text: str) -> str:
-    """Text as LaTeX prints it.
+    """Return the text as LaTeX prints it.
 
     >>> _escaped("a_b & 5 %")
     'a\\\\_b \\\\& 5 \\\\%'

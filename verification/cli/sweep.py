@@ -220,7 +220,7 @@ def _table(done: Sweep, store: Path) -> str:
 
 
 def _quality(rows: list[Row]) -> list[str]:
-    """Error bars against the scatter, and the warnings with their numbers of runs."""
+    """Return the error bars against the scatter, and the warnings with their numbers of runs."""
     from verification.sweep.quality import quality_of, warnings_of
 
     table = [

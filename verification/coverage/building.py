@@ -74,7 +74,7 @@ def solve_all(path: Path, seeds: Iterable[int], kinds: Iterable[str] = tuple(CLA
 
 
 def _solved(kind: str, seed: int) -> dict[str, Any]:
-    """One line: without grids where one of them did not converge or has no contact."""
+    """Return one line: without grids where one of them did not converge or has no contact."""
     one, found = scene(kind, seed), list[dict[str, Any]]()
     for M in (*GRIDS, REFERENCE):
         try:
@@ -90,7 +90,7 @@ def _solved(kind: str, seed: int) -> dict[str, Any]:
 
 
 def _records(path: Path) -> Iterator[dict[str, Any]]:
-    """The lines of a file; a last one cut short by a kill is skipped."""
+    """Yield the lines of a file; a last one cut short by a kill is skipped."""
     if not path.exists():
         return
     for line in path.read_text(encoding="utf-8").splitlines():
@@ -148,7 +148,8 @@ _DIGITS = {"numbers": 6, "first_contact": 5, "peak": 5, "faces": 5}
 
 
 def _plain(grid: GridFeatures) -> dict[str, Any]:
-    """Features as short plain values: shares of faces to 0.01, parts of error bars summed but for waves'."""
+    """Return the features as short plain values: shares of faces to 0.01, parts of error bars summed but for
+    waves'."""
     record = asdict(grid)
     record["highest_areas"] = ()
     record["faces"] = [[k, round(n, 2)] for k, n in enumerate(grid.faces) if n >= 0.005]
@@ -171,7 +172,7 @@ def as_corrected(features: GridFeatures) -> GridFeatures:
 
 
 def _short(value: Any, digits: int) -> Any:
-    """The value with its numbers rounded to significant digits."""
+    """Return the value with its numbers rounded to significant digits."""
     if isinstance(value, Mapping):
         return {name: _short(one, digits) for name, one in value.items()}
     if isinstance(value, list | tuple):

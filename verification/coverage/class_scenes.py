@@ -58,7 +58,7 @@ def _isotropic(draw: _Draw) -> rf.Surface:
 
 
 def _lay(turn: float) -> Kind:
-    """A lay at an angle (rad) to sliding, which is along an axis of the grid."""
+    """Return a lay at an angle (rad) to sliding, which is along an axis of the grid."""
 
     def lay(draw: _Draw) -> rf.Surface:
         draw.direction = float(draw.rng.integers(4)) * math.pi / 2
@@ -83,7 +83,7 @@ def _facets(draw: _Draw) -> rf.Surface:
 
 
 def _strips(draw: _Draw) -> rf.Surface:
-    """Grooves along a direction of small whole numbers on a square."""
+    """Return grooves along a direction of small whole numbers on a square."""
     draw.size = (SIDE, SIDE)
     m, n = ((1, 1), (1, 2), (2, 1), (1, 3), (2, 3), (3, 2))[draw.rng.integers(6)]
     number = int(draw.rng.integers(1, 3))
@@ -100,7 +100,7 @@ def _cut_off(draw: _Draw) -> rf.Surface:
 
 
 def _few_elements(draw: _Draw) -> rf.Surface:
-    """A smooth ball whose contact is a few elements wide."""
+    """Return a smooth ball whose contact is a few elements wide."""
     draw.periodic, draw.ball, draw.radii = False, True, (0.02, 0.06)
     return rf.Flat()
 
@@ -134,7 +134,7 @@ def _self_affine(draw: _Draw) -> rf.Surface:
 
 
 def _textured(draw: _Draw, sign: float, number: int) -> rf.Surface:
-    """Pads or dimples 1 to 15 elements wide, or wider where few, with round or sharp rims."""
+    """Return pads or dimples 1 to 15 elements wide, or wider where few, with round or sharp rims."""
     draw.size = (SIDE, SIDE)
     cell = SIDE / number
     radius = min(0.5 * draw.elements(1, 15) if sign < 0 else cell * draw.log(0.15, 0.42), 0.42 * cell)
@@ -177,7 +177,7 @@ def _ridges(draw: _Draw) -> rf.Surface:
 
 
 def _both_rough(draw: _Draw) -> rf.Surface:
-    """Roughness of Eq. (9), self-affine roughness or grooves on either body."""
+    """Return roughness of Eq. (9), self-affine roughness or grooves on either body."""
     laws: list[Kind] = [_isotropic, _self_affine, _oblique, _grooves]
     lower, upper = (laws[k] for k in draw.rng.permutation(len(laws))[:2])
     surface: rf.Surface = lower(draw)
@@ -204,13 +204,14 @@ def _short_waves(draw: _Draw) -> rf.Surface:
 
 
 def _mostly_contact(draw: _Draw) -> rf.Surface:
-    """Rough planes of which 60 to 95 % are in contact."""
+    """Return rough planes of which 60 to 95 % are in contact."""
     draw.periodic, draw.ball, draw.pressed_share = True, False, (0.9, 2.2)
     return _isotropic(draw)
 
 
 def _rounded_punch(draw: _Draw) -> rf.Surface:
-    """A punch with a rounded rim between like bodies, of which contact radius and pressure are known."""
+    """Return a punch with a rounded rim between like bodies, of which contact radius and pressure are
+    known."""
     draw.size, draw.periodic, draw.upper = (SIDE, SIDE), False, draw.lower
     draw.modulus = Pair(lower=draw.lower, upper=draw.lower).reduced_modulus
     a = SIDE * draw.log(0.08, 0.3)

@@ -123,7 +123,7 @@ def document(scenes: Sequence[Solved]) -> dict[str, Any]:
 
 
 def _short(value: Any) -> Any:
-    """Numbers with two digits: the table is made of all of them."""
+    """Return the numbers with two digits: the table is made of all of them."""
     return float(f"{value:.2g}") if isinstance(value, float) else value
 
 

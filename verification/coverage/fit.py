@@ -47,7 +47,7 @@ Sample = Callable[[GridFeatures, GridFeatures, Solved], Row | None]
 
 
 def _area_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row | None:
-    """Excess of the counted area, in elements; none where short waves or the hardness decide."""
+    """Return the excess of the counted area, in elements; none where short waves or the hardness decide."""
     dA, ratio = grid.grid.element_area, reference.grid.element_area / grid.grid.element_area
     if missed(grid) > _LEAST_WAVES or grid.yields:
         return None
@@ -59,13 +59,13 @@ def _area_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row |
 
 
 def _rest_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row | None:
-    """Error of mu without tau's share."""
+    """Return the error of mu without tau's share."""
     off = _rest(grid) - _rest(reference)
     return off, np.zeros(0), _squares(rest_sizes, grid, reference)
 
 
 def _transverse_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row | None:
-    """Error of Q over the load."""
+    """Return the error of Q over the load."""
     if grid.rms_slope == 0:
         return None
     squares = _squares(rest_sizes, grid, reference)
@@ -75,7 +75,8 @@ def _transverse_row(grid: GridFeatures, reference: GridFeatures, one: Solved) ->
 
 
 def _peak_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row | None:
-    """Error of the parabola's peak, over it; none where the hardness caps it or nothing bounds it."""
+    """Return the error of the parabola's peak, over it; none where the hardness caps it or nothing bounds
+    it."""
     if grid.yields or not (grid.peak.smooth and reference.peak.smooth):
         return None
     height = reference.peak.height
@@ -93,7 +94,7 @@ def _peak_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row |
 
 
 def _approach_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row | None:
-    """Error of the approach from first contact, over the depth."""
+    """Return the error of the approach from first contact, over the depth."""
     depth = reference.depth
     squares = _squares(approach_sizes, grid, reference) / depth**2
     if not np.isfinite(squares).all():
@@ -103,7 +104,7 @@ def _approach_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> R
 
 
 def _plastic_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row | None:
-    """Error of the area at the hardness, in elements."""
+    """Return the error of the area at the hardness, in elements."""
     if grid.unfilled is None or not grid.yields:
         return None
     dA = grid.grid.element_area
@@ -202,7 +203,7 @@ def constant(value: float | Array, error: float | Array | None, found: Fitted) -
 
 
 def _rounded(values: Array) -> Any:
-    """Plain numbers with three significant digits."""
+    """Return the plain numbers with three significant digits."""
     return np.vectorize(lambda x: float(f"{x:.3g}"))(values).tolist()
 
 

@@ -117,7 +117,7 @@ def _over_noise(table: SyntheticTable, found: Identification) -> dict[str, float
 
 
 def _identified(tables: TableSet, table: SyntheticTable) -> Identification:
-    """The fit of a table without a first guess of friction."""
+    """Return the fit of a table without a first guess of friction."""
     return identify(
         without_friction(table.scene),
         table.rows,

@@ -55,7 +55,7 @@ def coverages(stored: Mapping[int, Sequence[GridSolve]], accuracy: float) -> lis
 
 
 def _replayed(solves: Sequence[GridSolve], number: str, accuracy: float) -> Coverage:
-    """A grid is asked for only if the reference is at least twice as fine."""
+    """Judge a grid only if the reference is at least twice as fine."""
     reference, bound = reference_of(solves, number)
     usable = {one.M: one for one in solves if 2 * one.M <= solves[-1].M}
     finer = [M for M in usable if M not in FIRST_GRIDS]

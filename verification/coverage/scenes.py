@@ -83,7 +83,8 @@ def _smooth(dice: _Dice) -> rf.Scene:
 
 
 def _barrel(dice: _Dice) -> rf.Scene:
-    """Elongated up to ten to one: nearly a cylinder, without the ends that Eq. (7) leaves singular."""
+    """Draw a contact elongated up to ten to one: nearly a cylinder, without the ends that Eq. (7) leaves
+    singular."""
     ball, ratio = dice.ball(), dice.log(1.5, 10)
     root = math.sqrt(ratio)
     shape = Barrel(ball.R / root, ball.R * root)
@@ -121,7 +122,7 @@ def _measured(dice: _Dice) -> rf.Scene:
 
 
 def _periodic_waves(dice: _Dice) -> rf.Scene:
-    """Bisinusoids up to two thirds of what flattens them, ``sqrt(2) pi E* amplitude / wavelength``."""
+    """Draw bisinusoids up to two thirds of what flattens them, ``sqrt(2) pi E* amplitude / wavelength``."""
     number, amplitude = int(dice.rng.integers(1, 4)), SIDE * dice.log(1e-4, 1e-2)
     flattening = math.sqrt(2) * math.pi * dice.modulus * amplitude * number / SIDE
     mean = flattening * dice.log(0.02, 0.66)
@@ -130,7 +131,7 @@ def _periodic_waves(dice: _Dice) -> rf.Scene:
 
 
 def _periodic_rough(dice: _Dice) -> rf.Scene:
-    """Rough planes; contact takes about ``2 p / (E* rms gradient)`` of the area (Bush et al. 1975)."""
+    """Draw rough planes; contact takes about ``2 p / (E* rms gradient)`` of the area (Bush et al. 1975)."""
     rough = rf.GaussianRoughness(SIDE * dice.log(1e-4, 3e-3), SIDE * dice.log(0.08, 0.4), dice.seeds[0])
     scale = dice.modulus * math.sqrt(2) * rough.rms_slope
     mean = scale * dice.log(0.02, 0.2)

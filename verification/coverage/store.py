@@ -115,7 +115,8 @@ def _solved(seed: int, M: int) -> GridSolve:
 
 
 def _begun(seed: int, M: int) -> rf.Solution | None:
-    """The solution from the opening's answer, if a refinement asks for it and the opening has converged."""
+    """Return the solution from the opening's answer, if a refinement asks for it and the opening has
+    converged."""
     coarser = [grid for grid in FIRST_GRIDS if grid < M <= FINEST]
     start = _opened(seed, coarser[-1]) if coarser else None
     if start is None or not start.converged:
@@ -129,7 +130,7 @@ def _opened(seed: int, M: int) -> rf.Solution:
 
 
 def _apart(one: rf.Solution, other: rf.Solution) -> float:
-    """The largest relative difference of the numbers to be judged."""
+    """Return the largest relative difference of the numbers to be judged."""
     names = judged_numbers(one.details.friction)
     return max(abs(float(getattr(one, name)) / float(getattr(other, name)) - 1) for name in names)
 

@@ -87,7 +87,7 @@ class Profile(rf.Surface):
         return self.amplitude * self._unit(s)
 
     def _unit(self, s: Array) -> Array:
-        """Heights of amplitude one at shares s of a period."""
+        """Return the heights of amplitude one at shares s of a period."""
         if self.shape == "teeth":
             return np.where(s < self.top, s / self.top, (1 - s) / (1 - self.top))
         from_middle = np.abs(s - 0.5)

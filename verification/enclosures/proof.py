@@ -78,7 +78,8 @@ class _Balls:
         return Proof(self.contact, pressures, separations, approach, self._forces(pressures))
 
     def _solution(self) -> tuple[list[Ball], Ball]:
-        """Rows: Eq. (6) times K on each element of the set; then the load, or the approach itself."""
+        """Return the rows: Eq. (6) times K on each element of the set; then the load, or the approach
+        itself."""
         known, n = self.known, len(self.inside)
         matrix, right = self.flint.arb_mat(n + 1, n + 1), self.flint.arb_mat(n + 1, 1)
         for row, element in enumerate(self.inside):
@@ -113,7 +114,7 @@ class _Balls:
         return {**totals, "friction_coefficient": totals["friction_force"] / load}
 
     def _force_weights(self, element: tuple[int, int]) -> dict[str, tuple[Ball, Ball]]:
-        """Eqs (2), (3) and Q per element: factor of f, and the share of tau."""
+        """Return Eqs (2), (3) and Q per element: factor of f, and the share of tau."""
         tau, beta = self.number(self.known.friction.tau), self.number(self.known.friction.beta)
         cos_x, cos_y, _ = self._cosines(element)
         sin_x, sin_y = (t * c for t, c in zip(self._tangents(element), (cos_x, cos_y), strict=True))
@@ -130,7 +131,7 @@ class _Balls:
         return self.number(float(self.known.tan_x[element])), self.number(float(self.known.tan_y[element]))
 
     def _cosines(self, element: tuple[int, int]) -> tuple[Ball, Ball, Ball]:
-        """cos theta_x, cos theta_y and their product."""
+        """Return cos theta_x, cos theta_y and their product."""
         cos_x, cos_y = (1 / (1 + t * t).sqrt() for t in self._tangents(element))
         return cos_x, cos_y, cos_x * cos_y
 
@@ -138,7 +139,7 @@ class _Balls:
         return self.number(float(self.known.heights.max())) - self.number(float(self.known.heights[element]))
 
     def _by_tau(self, element: tuple[int, int]) -> Ball:
-        """Displacement by tau on the contact set."""
+        """Return the displacement by tau on the contact set."""
         total = self.number(0)
         if self.known.friction.tau:
             for source in self.inside:
@@ -146,7 +147,7 @@ class _Balls:
         return total * self.number(self.known.friction.tau)
 
     def _influence(self, element: tuple[int, int], source: tuple[int, int]) -> Ball:
-        """``a + beta c`` between two elements (m/Pa)."""
+        """Return ``a + beta c`` between two elements (m/Pa)."""
         i, j = element[0] - source[0], element[1] - source[1]
         coefficient = self._compliances[0] * self._table["normal"][abs(i)][abs(j)]
         if self.known.friction.beta:
@@ -154,7 +155,7 @@ class _Balls:
         return coefficient
 
     def _shear(self, i: int, j: int) -> Ball:
-        """c at an offset: ``s = x cos phi + y sin phi`` (m/Pa)."""
+        """Return c at an offset: ``s = x cos phi + y sin phi`` (m/Pa)."""
         phi = self.number(self.known.direction)
         x = self._table["tangential"][abs(i)][abs(j)] * ((i > 0) - (i < 0))
         y = self._table["tangential"][abs(j)][abs(i)] * ((j > 0) - (j < 0))
@@ -191,7 +192,8 @@ class _Balls:
         }
 
     def _periodic_table(self) -> dict[str, list[list[Ball]]]:
-        """Sums of the modes ``2 pi/q`` and ``-2 pi i q_x/q^2``; no mean, no sine at the Nyquist frequency."""
+        """Return the sums of the modes ``2 pi/q`` and ``-2 pi i q_x/q^2``; no mean, no sine at the Nyquist
+        frequency."""
         M = self.known.M
         number, scale = self.number, self.number(SIDE) / M**2
         turn = [2 * number(k) / M for k in range(M)]

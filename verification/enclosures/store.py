@@ -165,7 +165,8 @@ def _scene(content: Mapping[str, Any]) -> EnclosedScene:
 
 
 def _margins(proof: Proof) -> dict[str, float | None]:
-    """Smallest pressure over the peak and w over the approach (None in full contact), proven positive."""
+    """Return the smallest pressure over the peak and w over the approach (None in full contact), proven
+    positive."""
     pressures = [float(ball) for ball in proof.pressures]
     separations = [float(ball) for ball in proof.separations]
     return {

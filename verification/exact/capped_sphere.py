@@ -97,7 +97,8 @@ def plastic_limit(sphere: Sphere, hardness: float) -> tuple[float, float]:
 def _balanced(
     compliance: Array, gap: Array, area: Array, load: float, pressure: Array, free: NDArray[np.bool_]
 ) -> tuple[Array, float]:
-    """Pressures with those of the free rings, and the approach, from contact there and the load's balance."""
+    """Return the pressures with those of the free rings, and the approach, from contact there and the load's
+    balance."""
     k = np.flatnonzero(free)
     scale = float(np.abs(compliance).max())
     n = len(k)
@@ -112,13 +113,14 @@ def _balanced(
 
 
 def _edge(r: Array, pressure: Array, h: float) -> float:
-    """Radius at which the square of the pressure extrapolates to zero, if that is near the outermost ring."""
+    """Return the radius at which the square of the pressure extrapolates to zero, if that is near the
+    outermost ring."""
     last = np.flatnonzero(pressure > 0)
     return _zero(r, pressure**2, last[-_FITTED:], float(r[last[-1]] + h / 2), h)
 
 
 def _core(r: Array, room: Array, full: NDArray[np.bool_], h: float) -> float:
-    """Radius at which the square of the room below the hardness extrapolates to zero."""
+    """Return the radius at which the square of the room below the hardness extrapolates to zero."""
     if not full.any():
         return 0.0
     first = int(np.flatnonzero(~full)[0])

@@ -72,7 +72,8 @@ class CoupledHertz:
 
 
 def _carried(rho2: Array) -> Array:
-    """Share of the Hertz load within r: 1 - (1 - rho^2)^(3/2), without cancellation near the axis."""
+    """Return the share of the Hertz load within r: 1 - (1 - rho^2)^(3/2), without cancellation near the
+    axis."""
     root = np.sqrt(1 - rho2)
     return np.asarray(rho2 * (1 + root + root**2) / (1 + root))
 

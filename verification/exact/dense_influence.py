@@ -53,14 +53,15 @@ class DenseInfluence:
         return (self.shear_across_matrix @ traction.ravel()).reshape(traction.shape)
 
     def _pairs(self, angle: float | None) -> Array:
-        """``I[1/rho]``, or ``I[s/rho^2]`` with s at an angle, between all pairs (field, source)."""
+        """Return ``I[1/rho]``, or ``I[s/rho^2]`` with s at an angle, between all pairs (field, source)."""
         table = self._transformed(angle) if self.grid.periodic else self._integrated(angle)
         i, j = np.divmod(np.arange(self.grid.elements), self.grid.shape[1])
         pairs: Array = table[i[:, None] - i[None, :], j[:, None] - j[None, :]]  # negative: from the end
         return pairs
 
     def _integrated(self, angle: float | None) -> Array:
-        """Integrals over an element at all offsets ``0 ... n - 1, 1 - n ... -1`` along both axes (m)."""
+        """Return the integrals over an element at all offsets ``0 ... n - 1, 1 - n ... -1`` along both axes
+        (m)."""
         (n, m), (dx, dy) = self.grid.shape, self.grid.spacings
         x, y = (np.r_[0:n, 1 - n : 0] * dx)[:, None], (np.r_[0:m, 1 - m : 0] * dy)[None, :]
         if angle is None:
@@ -69,7 +70,8 @@ class DenseInfluence:
         return math.cos(angle) * along_x + math.sin(angle) * along_y
 
     def _transformed(self, angle: float | None) -> Array:
-        """Sums of the modes ``2 pi/q`` or ``-2 pi i q_s/q^2`` without the mean, at offsets from 0 (m)."""
+        """Return the sums of the modes ``2 pi/q`` or ``-2 pi i q_s/q^2`` without the mean, at offsets from 0
+        (m)."""
         axes = zip(self.grid.shape, self.grid.spacings, strict=True)
         q_x, q_y = np.meshgrid(*(2 * np.pi * np.fft.fftfreq(*axis) for axis in axes), indexing="ij")
         squared = q_x**2 + q_y**2

@@ -171,7 +171,8 @@ def solve(sphere: RoughSphere, panels: int = 24) -> EffectivePressure:
 
 
 def _first_guess(sphere: RoughSphere, r: Array) -> Array:
-    """Separation over sigma at the nodes, and d0: summits under Hertz' pressure, Hertz' gap beyond it."""
+    """Return the separation over sigma at the nodes, and d0: summits under Hertz' pressure, Hertz' gap beyond
+    it."""
     smooth = sphere.smooth
     table = np.linspace(10, -40, 2001)
     log_F = np.log(overlap_integral(table, 1.5))
@@ -183,8 +184,8 @@ def _first_guess(sphere: RoughSphere, r: Array) -> Array:
 
 
 def _displacement_matrix(end: float, panels: int) -> tuple[Array, Array, Array]:
-    """Nodes, weights, and the matrix of the integral of p(s) s/(s + r) K(m) ds at the nodes for node values
-    of p.
+    """Return the nodes, weights, and the matrix of the integral of p(s) s/(s + r) K(m) ds at the nodes for
+    node values of p.
     """
     nodes, base = leggauss(ORDER)
     edges = np.linspace(0, end, panels + 1)
@@ -208,7 +209,7 @@ def _displacement_matrix(end: float, panels: int) -> tuple[Array, Array, Array]:
 
 
 def _ring(s: Array, r: Array) -> Array:
-    """s/(s + r) K(m), with 1 - m = ((s - r)/(s + r))^2 free of cancellation."""
+    """Return s/(s + r) K(m), with 1 - m = ((s - r)/(s + r))^2 free of cancellation."""
     return np.asarray(s / (s + r) * ellipkm1(((s - r) / (s + r)) ** 2))
 
 

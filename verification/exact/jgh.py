@@ -52,8 +52,8 @@ def nearly_full_area(load_ratio: ArrayLike) -> Array:
 
 
 def _cell(n: int) -> tuple[Array, Array]:
-    """Gap/Delta from first contact, and the symbol sqrt(2)/|(i, j)| that takes p/p* to a mean-free u/Delta;
-    ``(n, n)`` each.
+    """Return the gap/Delta from first contact, and the symbol sqrt(2)/|(i, j)| that takes p/p* to a mean-free
+    u/Delta; ``(n, n)`` each.
     """
     x = (np.arange(n) + 0.5) / n * np.pi
     i = np.arange(n)
@@ -120,6 +120,6 @@ def extrapolated(load_ratio: float, sizes: Sequence[int]) -> tuple[float, float,
 
 
 def _approach(p: Array) -> float:
-    """Pressure-weighted mean of u + gap over Delta, the gap counted from first contact."""
+    """Return the pressure-weighted mean of u + gap over Delta, the gap counted from first contact."""
     shape, symbol = _cell(len(p))
     return float(np.sum(p * (_displacement(symbol, p) + shape)) / np.sum(p))

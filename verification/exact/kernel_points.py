@@ -32,7 +32,7 @@ def random_points(seed: int, count: int) -> list[Point]:
 
 
 def _random_offset(rng: np.random.Generator) -> float:
-    """On the axis, inside, near the axis, near an edge, on the grid, or anywhere."""
+    """Draw a point on the axis, inside, near the axis, near an edge, on the grid, or anywhere."""
     kinds = (
         lambda: 0.0,
         lambda: rng.uniform(0, 0.5),

@@ -89,7 +89,7 @@ def tangential_by_transform(x: float, y: float, dx: float, dy: float, digits: in
 
 
 def _gauss_factor(u: Any, offset: float, edge: float) -> Any:
-    """Integral of exp(-s^2 u^2) over one edge, seen from ``offset``."""
+    """Return the integral of exp(-s^2 u^2) over one edge, seen from ``offset``."""
     near, far = abs(mp.mpf(offset)) - mp.mpf(edge) / 2, abs(mp.mpf(offset)) + mp.mpf(edge) / 2
     ends = mp.erf(u * far) - mp.erf(u * near) if near < 0 else mp.erfc(u * near) - mp.erfc(u * far)
     return mp.sqrt(mp.pi) / (2 * u) * ends
@@ -98,7 +98,7 @@ def _gauss_factor(u: Any, offset: float, edge: float) -> Any:
 def _over_the_half_line(
     integrand: Callable[[Any], Any], x: float, y: float, dx: float, dy: float, digits: int
 ) -> Any:
-    """Integral over u > 0 by the trapezoidal rule in log u.
+    """Return the integral over u > 0 by the trapezoidal rule in log u.
 
     Analytic for ``|Im log u| < pi/4``, hence an error like exp(-pi^2 / 2h). The tails left out, below
     ``dx dy u`` and above ``pi / u``, are small against ``dx dy / extent`` and against the offset x.
@@ -152,7 +152,7 @@ def tangential_enclosure(x: float, y: float, dx: float, dy: float) -> Any:
 
 
 def _enclose(corner: Corner, x: float, y: float, dx: float, dy: float) -> Any:
-    """Ball arithmetic over the corners, in doubled precision until the ball is small."""
+    """Run ball arithmetic over the corners, in doubled precision until the ball is small."""
     flint = arb()
     bits = 128
     while True:

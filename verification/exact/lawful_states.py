@@ -71,7 +71,7 @@ def lawful_states(scene: rf.Scene) -> list[NDArray[np.bool_]]:
 
 
 def _is_lawful(G: Array, shear: Array, h: Array, target: float, inside: NDArray[np.bool_]) -> bool:
-    """Whether the bordered equations on a set give pressures and gaps of the right sign."""
+    """Return whether the bordered equations on a set give pressures and gaps of the right sign."""
     index = np.flatnonzero(inside)
     n = len(index)
     bordered = np.zeros((n + 1, n + 1))

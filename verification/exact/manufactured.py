@@ -96,7 +96,7 @@ def _common_surface(M: int, random: np.random.Generator) -> Exact:
 
 
 def _slopes(z: Exact, M: int, angle: Any) -> tuple[Exact, Exact]:
-    """Central differences along and across the direction, one-sided at the border."""
+    """Return the central differences along and across the direction, one-sided at the border."""
     h, d = mp.mpf(SIDE) / M, []
     for axis in (0, 1):
         line = np.moveaxis(z, axis, 0)
@@ -108,7 +108,7 @@ def _slopes(z: Exact, M: int, angle: Any) -> tuple[Exact, Exact]:
 
 
 def _displacements(M: int, angle: Any, down: Exact, along: Exact, across: Exact) -> tuple[Exact, Exact]:
-    """``(u_lower, u_upper)`` of Eq. (7); friction pulls the upper body back, hence its minus sign."""
+    """Return ``(u_lower, u_upper)`` of Eq. (7); friction pulls the upper body back, hence its minus sign."""
     a, c = _tables(M)
     s, t = _exact(np.zeros((2, M, M)))
     total = _exact(np.zeros((M, M)))
@@ -135,7 +135,7 @@ def _displacements(M: int, angle: Any, down: Exact, along: Exact, across: Exact)
 
 @cache
 def _tables(M: int) -> tuple[Exact, Exact]:
-    """``I[1/rho]`` and ``I[x/rho^2]`` at offsets ``(i, j)`` (m)."""
+    """Return ``I[1/rho]`` and ``I[x/rho^2]`` at offsets ``(i, j)`` (m)."""
     h = Grid.square(SIDE, M).spacings[0]
     a, c = np.empty((2, M, M), dtype=object)
     for i in range(M):

@@ -122,7 +122,8 @@ class _Plate:
 
 
 def _rectangle(x: Array, y: Array, a: Array, b: Array) -> Array:
-    """Integral of 1/rho over a 2a by 2b rectangle centred at the origin, seen from (x, y); broadcast.
+    """Return the integral of 1/rho over a 2a by 2b rectangle centred at the origin, seen from (x, y);
+    broadcast.
 
     From afar the corner sum cancels (thin elements lose all digits), so there the multipole series takes
     over: relative error (size/distance)^4 * 7/640 < 2e-8 beyond 30 half-sizes, on entries that are themselves

@@ -96,7 +96,8 @@ class RationalBump:
         return np.array([self.displacement(float(value), nu).imag - centre for value in x])
 
     def _cauchy(self, t: float) -> complex:
-        """(1 / 2 pi i) times the integral of w'(s) ln(s - t) over the strip, from above the boundary."""
+        """Return (1 / 2 pi i) times the integral of w'(s) ln(s - t) over the strip, from above the
+        boundary."""
         cut = min(max(t, self.t1), self.t2)
 
         def part(component: str, lower: float, upper: float) -> float:
@@ -118,7 +119,8 @@ class RationalBump:
         return (complex(real, imag) - 1j * np.pi * passed) / (2j * np.pi)
 
     def _cauchy_slope(self, zeta: complex) -> complex:
-        """-(1 / 2 pi i) times the integral of w'(s) / (s - zeta) over the strip, zeta inside the body."""
+        """Return -(1 / 2 pi i) times the integral of w'(s) / (s - zeta) over the strip, zeta inside the
+        body."""
         nodes, weights = np.polynomial.legendre.leggauss(60)  # to rounding: zeta is b away from the strip
         s = (self.t1 + self.t2) / 2 + (self.t2 - self.t1) / 2 * nodes
         values = np.array([self.slope_of_map(float(v)) / (v - zeta) for v in s])

@@ -68,7 +68,7 @@ class SlidingWave:
         return float(0.5 - np.arctan(self.coupling * self.beta) / np.pi)
 
     def _offset(self, w: float) -> float:
-        """Middle o of a contact of half-width w (both angles), NaN where none balances.
+        """Return the middle o of a contact of half-width w (both angles), NaN where none balances.
 
         Y - d beta X = -2 d tau (1 - c)/p* is linear in sin 2o and cos 2o once l = w - o, t = w + o are put
         in.
@@ -83,7 +83,7 @@ class SlidingWave:
         return float((np.arcsin(pull / reach) - np.arctan2(cosines, sines)) / 2)
 
     def _load(self, w: float) -> float:
-        """Mean pressure (Pa) at half-width w: p* X/2, X with l = w - o, t = w + o written out."""
+        """Return the mean pressure (Pa) at half-width w: p* X/2, X with l = w - o, t = w + o written out."""
         k, o = 1 - 2 * self.exponent, self._offset(w)
         even, odd = np.cos(2 * k * w) - np.cos(2 * w), np.sin(2 * k * w) - k * np.sin(2 * w)
         return float(self.full_contact_pressure / 2 * (np.cos(2 * o) * even - np.sin(2 * o) * odd))

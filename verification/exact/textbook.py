@@ -59,12 +59,12 @@ def _offsets(shape: tuple[int, int], edges: tuple[float, float]) -> tuple[Array,
 
 
 def _pairs(grid: Grid) -> tuple[Array, Array]:
-    """Offsets along x and y between all element centres, field by row."""
+    """Return the offsets along x and y between all element centres, field by row."""
     x, y = (axis.ravel() for axis in np.meshgrid(grid.x, grid.y, indexing="ij"))
     return x[:, None] - x[None, :], y[:, None] - y[None, :]
 
 
 def _corners(corner: Callable[[Array, Array], Array], x: Array, y: Array, dx: float, dy: float) -> Array:
-    """Second difference of an antiderivative over the corners of an element at an offset."""
+    """Return the second difference of an antiderivative over the corners of an element at an offset."""
     left, right, below, above = x - dx / 2, x + dx / 2, y - dy / 2, y + dy / 2
     return np.asarray(corner(right, above) - corner(right, below) - corner(left, above) + corner(left, below))

@@ -289,6 +289,7 @@ def _finite(name: str, number: Any) -> float:
 
 
 def _place(failure: BaseException) -> str:
-    """File name and line where it was raised; no directories, so results do not depend on the machine."""
+    """Return the file name and line where it was raised; no directories, so results do not depend on the
+    machine."""
     frames = traceback.extract_tb(failure.__traceback__)
     return f"{frames[-1].filename.rsplit('/', 1)[-1]}:{frames[-1].lineno}" if frames else "no traceback"

@@ -101,7 +101,7 @@ def family(
 
 
 def _imported_anew(old: Case, new: Case) -> bool:
-    """Whether the same line of the same module was compiled again, as `importlib.reload` does.
+    """Return whether the same line of the same module was compiled again, as `importlib.reload` does.
 
     One compiled line that declares twice is a loop whose ids are not all different.
     """

@@ -75,7 +75,7 @@ def run_all(cases: Sequence[Case], jobs: int, tick: Callable[[Result], None]) ->
 
 
 def _drain(lines: queue.SimpleQueue[list[Case]], stopped: threading.Event) -> Iterator[Case]:
-    """Cases, line after line, until no line is left or the event is set."""
+    """Yield the cases, line after line, until no line is left or the event is set."""
     while True:
         try:
             line = lines.get_nowait()
@@ -94,11 +94,11 @@ def kill_workers(others: set[BaseProcess]) -> None:
 
 
 def _process() -> ProcessPoolExecutor:
-    """A fresh interpreter ('spawn'): nothing is inherited but the environment and the module path."""
+    """Start fresh interpreters ('spawn'): nothing is inherited but the environment and the module path."""
     return ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn"))
 
 
 def _run_in_worker(module: str, case_id: str) -> Result:
-    """In the worker, find the case again by module and id: its function need not be picklable."""
+    """Find the case again in the worker, by module and id: its function need not be picklable."""
     importlib.import_module(module)
     return registry.find(case_id).run()

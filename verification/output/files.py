@@ -67,7 +67,7 @@ def try_out(path: Path) -> None:
 
 @contextmanager
 def _temporary(path: Path) -> Iterator[tuple[Path, Path]]:
-    """The name of a new file, and the file that a link leads to, beside which it is.
+    """Yield the name of a new file, and the file that a link leads to, beside which it is.
 
     It has the suffix of the path that was given, and is gone afterwards.
     """

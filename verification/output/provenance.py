@@ -107,7 +107,8 @@ def _is_checkout() -> bool:
 
 
 def _git(root: Path, *arguments: str) -> str | None:
-    """Output of a git command, which leaves no lock behind; None when there is no git or no repository."""
+    """Return the output of a git command, which leaves no lock behind; None when there is no git or no
+    repository."""
     try:
         asked = ["git", "--no-optional-locks", "-C", str(root), *arguments]
         done = subprocess.run(asked, capture_output=True, encoding="utf-8", errors="replace", check=True)

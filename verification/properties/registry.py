@@ -23,7 +23,7 @@ class Solver(Protocol):
         approach: float | None = None,
         oblique: bool | None = None,
     ) -> rf.Solution:
-        """The solution on a grid of ``(Mx, My)`` elements."""
+        """Return the solution on a grid of ``(Mx, My)`` elements."""
         ...
 
 

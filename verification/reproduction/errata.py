@@ -53,7 +53,8 @@ def _off(value: float, reference: float) -> float:
 
 
 def _slope_misfit(factor: float) -> float:
-    """Quoted slopes against ``factor`` times the component rms slope of Eq. (9), l = 33 elements."""
+    """Return the quoted slopes against ``factor`` times the component rms slope of Eq. (9), l = 33
+    elements."""
     length = LENGTH_IN_ELEMENTS * RESOLUTION
     slopes = {rms: rf.GaussianRoughness(rms, length, seed=0).rms_slope for rms in FLAT_RMS}
     return max(_off(math.degrees(factor * slope), QUOTED_SLOPES[rms]) for rms, slope in slopes.items())
@@ -64,12 +65,13 @@ def _plasticity_misfit(length: float) -> float:
 
 
 def _ours(quantity: str, flat_rms: float) -> float:
-    """Mean of six realisations at 128 x 128."""
+    """Return the mean of six realisations at 128 x 128."""
     return estimate(column(rows_at("quick", "table3"), quantity, lower_rms=flat_rms)).mean
 
 
 def _limit_misfit(*, elastic: bool) -> float:
-    """Printed friction at 1.68 um against its lower limit, or against Eq. (10) at the pressure solved for."""
+    """Return the printed friction at 1.68 um against its lower limit, or against Eq. (10) at the pressure
+    solved for."""
     printed = TABLE3[-1].friction_coefficient[-1]
     if not elastic:
         return _off(printed, LOWEST_FRICTION)
@@ -78,8 +80,8 @@ def _limit_misfit(*, elastic: bool) -> float:
 
 
 def _coarse_misfit(*, printed: bool) -> float:
-    """Mu of Table 3's two roughest columns against Eq. (10) with the A beside it: the largest misfit of the
-    printed 128 x 128 and 256 x 256, or of ours on 128 x 128.
+    """Return the mu of Table 3's two roughest columns against Eq. (10) with the A beside it: the largest
+    misfit of the printed 128 x 128 and 256 x 256, or of ours on 128 x 128.
     """
     pairs = [
         [(c.contact_area[mesh], c.friction_coefficient[mesh]) for mesh in (0, 1)]
@@ -94,7 +96,8 @@ def _coarse_misfit(*, printed: bool) -> float:
 
 
 def _outside(roughness: Iterable[float]) -> float:
-    """How far equivalent roughnesses (m) lie outside the range of section 6.1, relative to its ends."""
+    """Return how far equivalent roughnesses (m) lie outside the range of section 6.1, relative to its
+    ends."""
     lowest, highest = (math.hypot(SPHERE_RMS, flat) for flat in FLAT_RMS)
     values = list(roughness)
     return max(0.0, 1 - min(values) / lowest, max(values) / highest - 1)

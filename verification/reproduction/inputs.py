@@ -57,7 +57,7 @@ def half_widths(column: Column) -> dict[str, float]:
 
 
 def _load_bound() -> float:
-    """Largest relative distance from 70 N of a load that the printed a0 and f0 allow."""
+    """Return the largest relative distance from 70 N of a load that the printed a0 and f0 allow."""
     loads = [
         2 * math.pi / 3 * (HERTZ_RADIUS + s * HALF_DIGIT["a0"]) ** 2 * (HERTZ_PRESSURE + s * HALF_DIGIT["f0"])
         for s in (-1, 1)

@@ -44,7 +44,7 @@ def element_integrals(M: int, spacing: float) -> dict[str, Array]:
 
 
 def _log_sum(a: Array, b: Array, rho: Array) -> Array:
-    """``log(a + rho)``, free of cancellation for a < 0: ``a + rho = b^2 / (rho - a)``."""
+    """Return ``log(a + rho)``, free of cancellation for a < 0: ``a + rho = b^2 / (rho - a)``."""
     reach = np.abs(a) + rho
     return np.log(np.where(a < 0, b * b / reach, reach))
 

@@ -131,7 +131,7 @@ def _trials_of(number: int, problem: Problem, plan: Plan) -> list[Trial]:
 
 
 def _mu_and_area(problem: Problem) -> tuple[float, float]:
-    """Friction coefficient and contact area (m^2); raises `RuntimeError` without convergence."""
+    """Return the friction coefficient and contact area (m^2); raises `RuntimeError` without convergence."""
     state = solve_fft(problem, TOLERANCE, Counter())
     if not state.certificate.satisfies(10 * TOLERANCE):
         raise RuntimeError(f"{state.status.value}: {state.certificate.largest:.1e}")

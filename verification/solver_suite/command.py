@@ -126,7 +126,7 @@ class Command:
 
 
 def _last_line(output: BinaryIO) -> str:
-    """The end of what a program said; it may have said gigabytes, or removed the file."""
+    """Return the end of what a program said; it may have said gigabytes, or removed the file."""
     output.seek(max(0, output.seek(0, os.SEEK_END) - MOST_READ))
     said = output.read(MOST_READ).decode(errors="replace").split("\n")
     return next((line.strip() for line in reversed(said) if line.strip()), "nothing said")[:200]
@@ -179,7 +179,8 @@ def read_answer(directory: Path) -> Answer:
 
 
 def _read_table(path: Path) -> Array:
-    """Numbers between commas; ValueError says which line has something else, or another number of them."""
+    """Return the numbers between commas; ValueError says which line has something else, or another number of
+    them."""
     rows: list[list[float]] = []
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
         if not line:

@@ -74,7 +74,7 @@ def _combinations(row: Sequence[int], strength: int) -> Iterator[Combination]:
 
 
 def _with(row: Sequence[int], k: int, strength: int) -> Iterator[Combination]:
-    """Those of a row's combinations that hold dimension ``k``."""
+    """Yield those of a row's combinations that hold dimension ``k``."""
     others = [other for other in range(len(row)) if other != k]
     for chosen in itertools.combinations(others, strength - 1):
         yield tuple(itertools.chain(*((each, row[each]) for each in sorted((k, *chosen)))))

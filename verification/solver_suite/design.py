@@ -60,7 +60,7 @@ def seed_of(design: str, number: int) -> int:
 
 
 def _rows_of(designs: Mapping[str, Design], sizes: Sequence[int]) -> dict[str, tuple[dict[str, Any], ...]]:
-    """Rows by name; each problem of a memory has the next one of the sizes."""
+    """Return the rows by name; each problem of a memory has the next one of the sizes."""
     made, next_size = {}, iter(sizes)
     for name, design in designs.items():
         found = [{**design.fixed, **row} for row in stored(name, design)]
@@ -73,7 +73,7 @@ def _rows_of(designs: Mapping[str, Design], sizes: Sequence[int]) -> dict[str, t
 
 
 def _bounded(row: dict[str, Any]) -> dict[str, Any]:
-    """A flat periodic gap has no approach: its pressures are given by the load alone."""
+    """Return no approach: a flat periodic gap has none, its pressures are given by the load alone."""
     flat = row["surface"] == "flat" or row["elements"] == 1
     return row | {"control": "load"} if flat and row["borders"] == "periodic" else row
 

@@ -102,7 +102,7 @@ class Remote:
         self.abilities = self._open()
 
     def __call__(self, problem: ContactProblem) -> Answer:
-        """The solver's answer. Raises `Reported` for what became of it instead, and `Unavailable`."""
+        """Return the solver's answer. Raises `Reported` for what became of it instead, and `Unavailable`."""
         if self._lost:
             self.close()
             self._open()
@@ -134,7 +134,8 @@ class Remote:
             raise
 
     def _greeting(self) -> Abilities:
-        """Abilities of the solver. Raises `InputError` for one that is refused, or whose process is lost."""
+        """Return the abilities of the solver. Raises `InputError` for one that is refused, or whose process
+        is lost."""
         try:
             said, _ = process.reply(self._process, self._folder / "0", START)
             if "abilities" in said:

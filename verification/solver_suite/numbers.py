@@ -81,7 +81,7 @@ JUDGES = {"approach": approach, "contact_area": contact_area, "mean_displacement
 
 
 def _error_of_mean(problem: ContactProblem, f: Array, weights: Array | Mask) -> float:
-    """Largest difference (m) of two means of displacements with these weights, by the claim."""
+    """Return the largest difference (m) of two means of displacements with these weights, by the claim."""
     total = float(f.sum())
     if not total > 0:
         return _rounding(problem, f)

@@ -37,7 +37,7 @@ class Own:
         return f"refimpl {rf.__version__}"
 
     def __call__(self, problem: ContactProblem) -> Answer:
-        """The pressures; converged when the solution is certified.
+        """Return the pressures; converged when the solution is certified.
 
         An alternating contact edge is no success here: on it the problem, tau wherever f > 0, has no solution
         that the solver has found, though the pressures solve that without tau on a few elements.

@@ -113,17 +113,18 @@ def serve(folder: str) -> None:
     numbers: queue.SimpleQueue[int] = queue.SimpleQueue()
     asked = os.fdopen(os.dup(0), encoding="ascii")
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-    threading.Thread(target=_listen, args=(asked, numbers, folder), daemon=True).start()
+    given = (asked, numbers, folder, os.environ[SOLVER_OF])  # a solver may clear its environment
+    threading.Thread(target=_listen, args=given, daemon=True).start()
     _answer(Path(folder), numbers)
 
 
-def _listen(asked: Iterable[str], numbers: queue.SimpleQueue[int], folder: str) -> None:
+def _listen(asked: Iterable[str], numbers: queue.SimpleQueue[int], folder: str, mark: str) -> None:
     with suppress(OSError):
         for line in asked:
             numbers.put(int(line))
     numbers.put(0)
     time.sleep(2 * PATIENCE)
-    for each in _marked(os.environ[SOLVER_OF]) - {psutil.Process()}:
+    for each in _marked(mark) - {psutil.Process()}:
         with suppress(psutil.Error):
             each.kill()
     shutil.rmtree(folder, ignore_errors=True)
@@ -155,7 +156,7 @@ def _write(path: Path, header: Mapping[str, Any], body: bytes = b"") -> None:
 
 
 def _posed(solver: SolverUnderTest, problem: Any) -> tuple[dict[str, Any], bytes]:
-    """Header and body of the reply: checked numbers and pressures, or why there are none."""
+    """Return the header and body of the reply: checked numbers and pressures, or why there are none."""
     try:
         answer = ask(solver, problem)
     except Unavailable as missing:
@@ -170,7 +171,7 @@ def _posed(solver: SolverUnderTest, problem: Any) -> tuple[dict[str, Any], bytes
 
 
 def _alive(process: psutil.Process) -> bool:
-    """Whether a process is there and no zombie."""
+    """Return whether a process is there and no zombie."""
     try:
         return bool(process.is_running() and process.status() != psutil.STATUS_ZOMBIE)
     except psutil.Error:
@@ -178,7 +179,7 @@ def _alive(process: psutil.Process) -> bool:
 
 
 def _marked(mark: str) -> set[psutil.Process]:
-    """Living processes that carry the mark in their environment, whatever session they are in."""
+    """Return the living processes that carry the mark in their environment, whatever session they are in."""
     found = set()
     for process in psutil.process_iter():
         with suppress(psutil.Error, OSError):

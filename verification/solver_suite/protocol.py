@@ -355,7 +355,7 @@ def ask(solver: SolverUnderTest, problem: ContactProblem) -> Answer:
 
 
 def _numbers(answer: Answer) -> dict[str, float]:
-    """The numbers that an answer has, by name. Raises `BadAnswer` for what is no finite number."""
+    """Return the numbers that an answer has, by name. Raises `BadAnswer` for what is no finite number."""
     found = {name: getattr(answer, name) for name in NUMBERS if getattr(answer, name) is not None}
     for name, number in found.items():
         real = isinstance(number, numbers.Real) and not isinstance(number, bool)

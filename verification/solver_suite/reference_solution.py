@@ -50,7 +50,7 @@ def is_large(problem: ContactProblem) -> bool:
 
 
 def _matrix(problem: ContactProblem, direction: float | None) -> Array:
-    """``I[1/rho]``, or ``I[s/rho^2]`` along a direction, between all elements (m)."""
+    """Return ``I[1/rho]``, or ``I[s/rho^2]`` along a direction, between all elements (m)."""
     if is_large(problem):
         raise ValueError(f"{problem.gap.size} elements are too many for dense matrices")
     return problem.spacing * _unit_matrix(problem.shape, _edges(problem)[1], direction)
@@ -58,13 +58,13 @@ def _matrix(problem: ContactProblem, direction: float | None) -> Array:
 
 @lru_cache(maxsize=4)
 def _unit_matrix(shape: tuple[int, int], aspect: float, direction: float | None) -> Array:
-    """The same for elements of edge 1 along x and ``aspect`` along y."""
+    """Return the same for elements of edge 1 along x and ``aspect`` along y."""
     grid = Grid(shape, (float(shape[0]), shape[1] * aspect))
     return normal_matrix(grid) if direction is None else shear_matrix(grid, direction)
 
 
 def _edges(problem: ContactProblem) -> tuple[float, float]:
-    """Edges of an element in units of that along x."""
+    """Return the edges of an element in units of that along x."""
     return 1.0, problem.spacings[1] / problem.spacings[0]
 
 
@@ -175,7 +175,8 @@ def residual(problem: ContactProblem, pressure: Array) -> Residual:
 
 
 def _two_sided_gap(f: Array, v: Array, hardness: float, approach: float | None) -> float:
-    """``sum [f (v - d)+ + (H - f)(d - v)+]`` (Pa m), d being the approach or the mean of v that f weights.
+    """Return ``sum [f (v - d)+ + (H - f)(d - v)+]`` (Pa m), d being the approach or the mean of v that f
+    weights.
 
     It is the most that ``sum (f - g)(v - d)`` reaches for pressures g between the bounds, so at the load of
     the solution it bounds the squared error in the energy norm, whatever d is (see `misfit`).
@@ -220,7 +221,8 @@ def approach_of(problem: ContactProblem, pressure: Array) -> float:
 
 
 def _flexibility(problem: ContactProblem) -> Array:
-    """Displacements (m/Pa) of all elements by all, frictionless or with beta. Raises ValueError for tau."""
+    """Return the displacements (m/Pa) of all elements by all, frictionless or with beta. Raises ValueError
+    for tau."""
     c, (n, m) = problem.coupling, problem.shape
     if c is not None and c.tau != 0:
         raise ValueError("elimination is for problems without tau")
@@ -237,7 +239,8 @@ def _flexibility(problem: ContactProblem) -> Array:
 
 
 def _on(problem: ContactProblem, matrix: Array, contact: Mask) -> tuple[Array, float]:
-    """Pressures (all elements) and approach from first contact on a contact set, by Gauss' elimination."""
+    """Return the pressures (all elements) and approach from first contact on a contact set, by Gauss'
+    elimination."""
     k, gap = np.flatnonzero(contact), problem.gap.ravel()
     block, approach, f = matrix[np.ix_(k, k)], problem.approach_from_touch, np.zeros(gap.size)
     if approach is not None:

@@ -13,8 +13,7 @@ CG_TOLERANCE = 1e-10
 
 
 def measure(M: int) -> dict[str, float]:
-    """Return the extreme eigenvalues (unit elements), condition number, digits lost by a direct solve, CG
-    iterations.
+    """Extreme eigenvalues (unit elements), condition number, digits lost by a direct solve, CG iterations.
 
     The right-hand side is formed in long double from known pressures: the solve's error is its own.
     """
@@ -33,13 +32,13 @@ def measure(M: int) -> dict[str, float]:
 
 
 def conjugate_gradients(matrix: Array, right: Array) -> int:
-    """Return the steps of the plain method to `CG_TOLERANCE`: about sqrt(condition) ln(2 / tolerance) / 2."""
+    """Steps of the plain method to `CG_TOLERANCE`: about sqrt(condition) ln(2 / tolerance) / 2."""
     steps: list[Array] = []
     cg(matrix, right, rtol=CG_TOLERANCE, callback=steps.append)
     return len(steps)
 
 
 def table() -> dict[str, list[float]]:
-    """Return the columns over the grid."""
+    """Columns over the grid."""
     rows = [measure(M) for M in GRIDS]
     return {"M": [float(M) for M in GRIDS], **{name: [row[name] for row in rows] for name in rows[0]}}

@@ -52,7 +52,7 @@ def state(
     series: str, at: str, x: float, scene: rf.Scene, method: Method,
     elements: int = M, seconds: float = 20.0, **options: Any,
 ) -> Extreme:  # fmt: skip
-    """Return a state that the oracle judges; the solver's name ends the name of its series.
+    """A state that the oracle judges; the solver's name ends the name of its series.
 
     The plain reference's loops end by themselves within 12 s at the extremes.
     """
@@ -62,7 +62,7 @@ def state(
 
 @caught
 def by_oracle(scene: rf.Scene, elements: int, method: Method = "fft", **options: Any) -> Judged:
-    """Judge pressure, approach and forces against the exact discrete state."""
+    """Pressure, approach and forces against the exact discrete state."""
     solution = rf.solve(scene, elements, method=method, tolerance=TOLERANCE, **options)
     try:
         error, note = exact_error(scene, solution, **options)
@@ -76,7 +76,7 @@ def by_oracle(scene: rf.Scene, elements: int, method: Method = "fft", **options:
 
 
 def oracle_of(scene: rf.Scene, M: int, **options: Any) -> Oracle:
-    """The oracle of a scene by the options of `refimpl.solve`."""
+    """Return the oracle of a scene by the options of `refimpl.solve`."""
     return Oracle(
         scene, M,
         approach=options.get("approach"),
@@ -86,7 +86,7 @@ def oracle_of(scene: rf.Scene, M: int, **options: Any) -> Oracle:
 
 
 def sought(oracle: Oracle) -> str:
-    """Whether continuation finds a state that no solver found, and that obeys the law everywhere."""
+    """Return whether continuation finds a state that no solver found, and that obeys the law everywhere."""
     try:
         oracle.continued()
     except NotSettled as unsettled:
@@ -105,13 +105,13 @@ def verdict(
 
 
 def change(solution: rf.Solution, other: rf.Solution) -> float:
-    """Return the largest relative change of pressures, to the other solution's peak, and of the approach."""
+    """Largest relative change of pressures, to the other solution's peak, and of the approach."""
     pressures = float(np.abs(solution.pressure - other.pressure).max()) / other.max_pressure
     return max(pressures, abs(solution.approach / other.approach - 1))
 
 
 def exact_error(scene: rf.Scene, solution: rf.Solution, **options: Any) -> tuple[float, str]:
-    """Return the largest relative error of a solution's pressure, approach, N and F; and a note.
+    """Largest relative error of a solution's pressure, approach, N and F; and a note.
 
     Pressures relative to the peak, approaches to their size or, where that nearly vanishes, to the
     displacement that one element's peak pressure makes; forces to N. A contact set that differs by elements
@@ -145,7 +145,7 @@ def exact_error(scene: rf.Scene, solution: rf.Solution, **options: Any) -> tuple
 
 
 def _untouched(oracle: Oracle, solution: rf.Solution) -> tuple[float, str]:
-    """No contact is right where the exact gap is nowhere below the approach."""
+    """Judge no contact: right where the exact gap is nowhere below the approach."""
     if oracle.approach is None:
         return 1.0, "no contact under a load"
     overlap = oracle.approach - min(oracle.h)

@@ -22,8 +22,8 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array, Mask
-from verification.stress_tests import exact_operators as operators
-from verification.stress_tests.exact_operators import DIGITS, Exact
+from verification.exact import exact_operators as operators
+from verification.exact.exact_operators import DIGITS, Exact
 
 STEPS, REFINEMENTS = 60, 20  # limits of Newton's steps in doubles, and in digits
 CLOSE, SETTLED = 1e-8, 1e-20  # largest last step: relative to the state; in digits, below a double's
@@ -127,7 +127,7 @@ class Oracle:
     def _guess(
         self, f: Array, support: Mask, beta: float, tangents: tuple[Array, Array] | None = None
     ) -> Guess:
-        """Unknowns of a pressure; gaps, approach and slopes follow from its displacements."""
+        """Return the unknowns of a pressure; gaps, approach and slopes follow from its displacements."""
         peak = float(f.max())
         length = float(sum(self.a) * self.spacing) * peak
         if length == 0:
@@ -150,7 +150,8 @@ class Oracle:
         return Guess(x, contact, units)
 
     def _residual(self, on: dict[str, Exact], state: Guess, support: Mask, load: Any, beta: Any) -> Exact:
-        """Residuals of Eqs (6) and (7), of the tangents, and of Eq. (2); a column for each of ``state.x``."""
+        """Return the residuals of Eqs (6) and (7), of the tangents, and of Eq. (2); a column for each of
+        ``state.x``."""
         n, (peak, length, room) = self.n, state.units
         x, inside = state.x, state.contact[:, None].astype(float)
         f, gap = x[:n] * inside, x[:n] * (1 - inside)
@@ -174,19 +175,22 @@ class Oracle:
         return np.concatenate([contact, *slopes, carried * (on["dA"][0] * peak / load) - 1])
 
     def _step(self, state: Guess, support: Mask, load: Any, beta: Any, residual: Array) -> Array:
-        """Newton's step for a residual: the Jacobian by complex steps, its rows and columns in one size."""
+        """Return Newton's step for a residual: the Jacobian by complex steps, its rows and columns in one
+        size."""
         size = len(state.x)
         shifted = state.x.astype(float) + 1j * TINY * np.eye(size)
         jacobian = self._residual(self.doubles, state._replace(x=shifted), support, load, beta).imag / TINY
         rows = 1 / np.abs(jacobian).max(axis=1)
         columns = 1 / np.abs(jacobian * rows[:, None]).max(axis=0)
         try:
-            return columns * np.linalg.solve(jacobian * rows[:, None] * columns, -rows * residual)
+            step = np.linalg.solve(jacobian * rows[:, None] * columns, -rows * residual)
         except np.linalg.LinAlgError:
             raise NotSettled("singular equations") from None
+        return np.asarray(columns * step)
 
     def _moved(self, state: Guess, step: Exact, one: bool) -> tuple[Guess, bool]:
-        """The state after a step; elements of negative pressure or gap are exchanged, all or the last one."""
+        """Return the state after a step; elements of negative pressure or gap are exchanged, all or the last
+        one."""
         x = state.x + step[:, None]
         y = x[: self.n, 0]
         bad = np.zeros(self.n, dtype=bool)
@@ -214,7 +218,7 @@ class Oracle:
         raise NotSettled("Newton's steps do not end")
 
     def _refined(self, state: Guess, support: Mask) -> Exactly:
-        """Residuals in digits, steps by the Jacobian in doubles."""
+        """Return the residuals in digits, steps by the Jacobian in doubles."""
         load, law = self.scene.load, self.scene.friction
         with mp.workdps(DIGITS):
             state = state._replace(x=_exact(state.x[:, 0])[:, None])

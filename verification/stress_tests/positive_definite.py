@@ -37,12 +37,11 @@ from __future__ import annotations
 import numpy as np
 
 from refimpl.grid import Array
-from verification.stress_tests.exact_operators import normal, tangential
+from verification.exact.exact_operators import normal, tangential
 
 
 def symmetric_part(M: int, beta: float, ratio: float, slope: float = 0.0) -> Array:
-    """Return the eigenvalues of the symmetric part of ``a (1 - beta t) + ratio beta c`` on M x M unit
-    elements.
+    """Eigenvalues of the symmetric part of ``a (1 - beta t) + ratio beta c`` on M x M unit elements.
 
     ``ratio`` is the shear over the normal compliance; ``slope`` is t = tan theta_x of alternate rows of
     elements, of either sign, as the slope correction sees it (0 without it). Entries are the exact ones,
@@ -55,7 +54,7 @@ def symmetric_part(M: int, beta: float, ratio: float, slope: float = 0.0) -> Arr
 
 
 def least_symbol(M: int = 64) -> float:
-    """Return the symbol's least value, at p = q = pi: the limit of the least eigenvalue on growing grids.
+    """The symbol's least value, at p = q = pi: the limit of the least eigenvalue on growing grids.
 
     Sums the coefficients out to M elements with alternating signs, whose tail is below the last term.
     """

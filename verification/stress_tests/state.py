@@ -54,7 +54,7 @@ class Extreme:
 
 
 def digits_kept(error: float) -> float:
-    """Return ``-log10`` of a relative error, between 0 and `DIGITS_MOST`.
+    """``-log10`` of a relative error, between 0 and `DIGITS_MOST`.
 
     >>> digits_kept(1e-12), digits_kept(0.0), digits_kept(3.0)
     (12.0, 17.0, 0.0)

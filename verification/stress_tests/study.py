@@ -48,7 +48,7 @@ def kind_of(unique: str, verdict: Verdict) -> str | None:
 
 
 def run(names: Iterable[str] = (), tick: Callable[[str], None] = lambda _: None) -> list[Row]:
-    """Rows of the named axes (all by default)."""
+    """Return the rows of the named axes (all by default)."""
     rows = []
     for name in tuple(names) or AXES:
         for unique, extreme in states(name):
@@ -58,13 +58,13 @@ def run(names: Iterable[str] = (), tick: Callable[[str], None] = lambda _: None)
 
 
 def counts(rows: Iterable[Row]) -> dict[str, int]:
-    """Number of states by verdict."""
+    """Return the number of states by verdict."""
     found = Counter(row["verdict"] for row in rows)
     return {verdict.value: found[verdict.value] for verdict in Verdict}
 
 
 def summary(rows: Iterable[Row]) -> list[Row]:
-    """The table axis x series: range, verdicts, fewest and median digits of the right ones."""
+    """Return the table of axes and series: range, verdicts, fewest and median digits of the right ones."""
     groups: dict[tuple[str, str], list[Row]] = {}
     for row in rows:
         groups.setdefault((row["axis"], row["series"]), []).append(row)
@@ -84,7 +84,7 @@ def summary(rows: Iterable[Row]) -> list[Row]:
 
 
 def document(rows: list[Row]) -> dict[str, Any]:
-    """The result file: states, table, condition numbers, lawful states, limits."""
+    """Return the result file: states, table, condition numbers, lawful states, limits."""
     plain = jsonable(
         {
             "format": FORMAT,

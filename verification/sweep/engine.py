@@ -140,7 +140,7 @@ Done = Iterator[tuple[Run, "Future[tuple[Row, float]]"]]
 
 
 def _failure(done: Future[tuple[Row, float]]) -> BaseException | None:
-    """What the run raised; raises WorkersLost where it is not the run's doing."""
+    """Return what the run raised; raises WorkersLost where it is not the run's doing."""
     try:
         failure = done.exception()
     except CancelledError as lost:
@@ -159,7 +159,8 @@ def _through(executor: Executor, runs: Iterable[Run]) -> Done:
 
 @contextmanager
 def _here(workers: int) -> Iterator[Executor]:
-    """This process, or fresh interpreters ('spawn') with one thread each, that end when this process does."""
+    """Yield this process, or fresh interpreters ('spawn') with one thread each, that end when this process
+    does."""
     if workers == 0:
         thread = ThreadPoolExecutor(1)
         try:
@@ -183,7 +184,7 @@ def _here(workers: int) -> Iterator[Executor]:
 
 
 def _end_with_parent() -> None:
-    """In a worker: leave when the parent is gone. A killed parent cannot tell its workers to stop."""
+    """Leave a worker when the parent is gone. A killed parent cannot tell its workers to stop."""
     parent = multiprocessing.parent_process()
     if parent is None:
         return

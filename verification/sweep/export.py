@@ -73,7 +73,7 @@ def named(row: Row) -> Row:
 
 
 def _with_own_columns(rows: Sequence[Row]) -> tuple[list[Row], list[str]]:
-    """The rows, and names of their columns: after all others, what the study varies by full names."""
+    """Return the rows, and names of their columns: after all others, what the study varies by full names."""
     own = dict.fromkeys(name for row in rows for name in named(row))
     return [row | named(row) for row in rows], [*EXPORTED, *own]
 

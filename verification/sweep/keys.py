@@ -93,7 +93,8 @@ def uses(kind: str) -> dict[str, str]:
 
 
 def _study() -> tuple[Key, ...]:
-    """The keys of the file itself; defaults are those of the study that a file of two lines becomes."""
+    """Return the keys of the file itself; defaults are those of the study that a file of two lines
+    becomes."""
     made = study_from_dict({"scene": _BASE["scene"], "vary": _BASE["vary"]})
     defaults = {name: as_toml(getattr(made, name)) for name in ("realisations", "first_seed", "normalise")}
     defaults |= {"scene": REQUIRED, "vary": "-", "solve": "-"}
@@ -121,7 +122,7 @@ def _solve() -> tuple[Key, ...]:
 
 
 def _refusal(table: str, key: str) -> str:
-    """What the refusal of a wrong entry of a table of the study allows."""
+    """Return what the refusal of a wrong entry of a table of the study allows."""
     known = {"accuracy": 0.1} if key == "quantity" else {}
     base = {} if known else _BASE["vary"]
 

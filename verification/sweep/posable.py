@@ -93,7 +93,8 @@ def covered_size(study: Study) -> tuple[tuple[float, float], str]:
 
 
 def _closest(study: Study) -> Iterator[Scene]:
-    """The scenes that come closest to a limit of their heights; slides of one scene share its surfaces."""
+    """Yield the scenes that come closest to a limit of their heights; slides of one scene share its
+    surfaces."""
     turns = study.vary.get("sliding_direction", (study.scene["sliding_direction"],))
     nearest = (max(turns, key=lambda phi: abs(component(phi))) for component in (math.cos, math.sin))
     directions = tuple(dict.fromkeys(nearest))
@@ -107,7 +108,8 @@ def _closest(study: Study) -> Iterator[Scene]:
 
 
 def _ends(axis: str, values: Sequence[Any]) -> tuple[Any, ...]:
-    """The values of an axis that come closest to a limit: all files; one of what limits do not depend on."""
+    """Return the values of an axis that come closest to a limit: all files; one of what limits do not depend
+    on."""
     if axis.endswith(".path"):
         return tuple(values)
     if axis.endswith(".seed"):

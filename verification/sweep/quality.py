@@ -43,7 +43,7 @@ def points_of(rows: Sequence[Row]) -> dict[tuple[object, ...], list[Row]]:
 
 
 def _without_seeds(row: Row) -> Row:
-    """The row without varied seeds, which make realisations and no other point."""
+    """Return the row without varied seeds, which make realisations and no other point."""
     if not row.get("parameters"):
         return row
     kept = {

@@ -150,12 +150,13 @@ class Study:
 
 
 def _random(body: Table) -> Table:
-    """The random part of a body; an empty table without one."""
+    """Return the random part of a body; an empty table without one."""
     return next((part for part in body["surface"] if part["kind"] in RANDOM), {})
 
 
 def _length(scene: Table) -> float | None:
-    """The correlation length of the scene's roughness; None without one, or where there are several."""
+    """Return the correlation length of the scene's roughness; None without one, or where there are
+    several."""
     found = [_random(scene[name]).get("correlation_length") for name in ("upper", "lower")]
     lengths = [length for length in found if length is not None]
     same = lengths and isinstance(lengths[0], float) and lengths.count(lengths[0]) == len(lengths)
@@ -163,7 +164,7 @@ def _length(scene: Table) -> float | None:
 
 
 def _changed(part: Table, own: Mapping[str, Any]) -> Table:
-    """A surface's table with other values; ``key[j]`` is one of a list."""
+    """Return a surface's table with other values; ``key[j]`` is one of a list."""
     for name, value in own.items():
         key, _, place = name.partition("[")
         old = part[key]

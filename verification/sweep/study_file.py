@@ -93,7 +93,8 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path(), *, keep_goi
 
 
 def _with_usable_files(study: Study, keep_going: bool) -> Study:
-    """The study without the varied files that are refused; without ``keep_going`` all of them at once."""
+    """Return the study without the varied files that are refused; without ``keep_going`` all of them at
+    once."""
     unusable = posable.unusable_files(study)
     if unusable and not keep_going:
         said = "".join(f"\n  {reason}" for reason in unusable.values())
@@ -156,7 +157,7 @@ def _check(study: Study) -> None:
 
 
 def _check_settings(settings: Mapping[str, Any]) -> None:
-    """The [solve] table: what `refimpl.solve` would refuse, before there is a store or a worker."""
+    """Check the [solve] table: what `refimpl.solve` would refuse, before there is a store or a worker."""
     _refuse_unknown("solve", settings, SOLVE_KEYS)
     if settings.get("method", "fft") not in METHODS:
         raise InputError("solve.method", settings["method"], f"one of {', '.join(METHODS)}")
@@ -172,7 +173,7 @@ def _check_settings(settings: Mapping[str, Any]) -> None:
 
 
 def _by_axis(vary: Mapping[str, Any]) -> dict[str, Any]:
-    """The table with the full names of tau and beta as the axes that they are."""
+    """Return the table with the full names of tau and beta as the axes that they are."""
     axes = {f"friction.{axis}": axis for axis in FRICTION_AXES}
     for name, axis in axes.items():
         if name in vary and axis in vary:
@@ -191,7 +192,7 @@ def _refuse_doubles(vary: Mapping[str, Any]) -> None:
 
 
 def _values(axis: str, values: object, folder: Path) -> tuple[Any, ...]:
-    """The values of an axis; files relative to the study's folder, where they are found there."""
+    """Return the values of an axis; files relative to the study's folder, where they are found there."""
     if axis.endswith(".path"):
         return _paths(axis, values, folder)
     allowed = "a finite number, or a list of different ones"

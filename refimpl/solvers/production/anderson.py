@@ -68,7 +68,7 @@ class AndersonMixing:
         self._products = products[kept, kept]
 
     def _cancelling(self, defect: Array) -> Array:
-        """Share of each change to subtract: the least squares of the defect that remains."""
+        """Return the share of each change to subtract: the least squares of the defect that remains."""
         if not self._changes:
             return np.empty(0)
         sizes = np.sqrt(np.diag(self._products))

@@ -216,7 +216,7 @@ class CappedCG(ProjectedCG):
             self.normal_displacement = self._apply(self.pressure)
 
     def _deepest_first(self) -> Array:
-        """The cap on the capped elements in the order of ``v``, as far as the target goes."""
+        """Return the cap on the capped elements in the order of ``v``, as far as the target goes."""
         assert self._target is not None
         order = np.argsort(np.where(self.capped, self.separation, math.inf), axis=None, kind="stable")
         most = (self._cap * self._K * self.capped).ravel()[order]

@@ -56,7 +56,8 @@ def nested_problems(problem: Problem, above: Shape | None) -> list[Problem]:
 
 
 def _coarser(shape: Shape) -> Shape:
-    """Half as many elements along each axis, rounded up; of a small grid a quarter if those are enough."""
+    """Return half as many elements along each axis, rounded up; of a small grid a quarter if those are
+    enough."""
     half = tuple((n + 1) // 2 for n in shape)
     quarter = tuple((n + 1) // 2 for n in half)
     n, m = quarter if max(shape) <= QUARTERED and min(quarter) >= COARSEST else half
@@ -107,7 +108,8 @@ def winkler_pressure(problem: Problem) -> Array:
 
 
 def _bearing_depth(problem: Problem) -> float:
-    """The least depth at which the foundation bears the load (m), of all that are as deep as some element.
+    """Return the least depth at which the foundation bears the load (m), of all that are as deep as some
+    element.
 
     Its stiffness is that of a half-space under a load of the contact's width, ``1 / (compliance width)``. On
     32 x 32 elements 0.6 or 2.5 times the width cost CG a sixth more steps (measured), and contact on 3 of 10
@@ -147,7 +149,7 @@ def likely_capped(pressure: Array, misfit: Array, contact: Mask, problem: Proble
 
 
 def _balancing(freed: Array, stiffness: float, total: float) -> float:
-    """The approach at which ``max(freed + stiffness approach, 0)`` adds up to the total.
+    """Return the approach at which ``max(freed + stiffness approach, 0)`` adds up to the total.
 
     Newton's method with all elements in contact at first. The function is convex, and its slope is the number
     of elements that press. So steps come from above, and the number falls until it is that of the solution.

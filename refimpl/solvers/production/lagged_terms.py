@@ -170,7 +170,8 @@ class LaggedTerms:
         self._posed = True
 
     def _target(self, K: Array) -> tuple[float | None, float]:
-        """What ``sum K f`` must be for N = P, with the rest of Eq. (2) as it is now; and |N - P| / P."""
+        """Return what ``sum K f`` must be for N = P, with the rest of Eq. (2) as it is now; and |N - P| /
+        P."""
         problem, pressure = self._problem, self._cg.pressure
         if problem.load is None:
             return None, 0.0
@@ -186,7 +187,7 @@ class LaggedTerms:
         return max(target, 1e-3 * problem.load / dA), load_error
 
     def _displacements(self) -> tuple[Array, Slopes]:
-        """What shear adds to CG's displacement (m), and the slopes of the surface that all tractions
+        """Return what shear adds to CG's displacement (m), and the slopes of the surface that all tractions
         leave."""
         problem, operator, elasticity = self._problem, self._operator, self._problem.elasticity
         displacement, pressure = self._cg.normal_displacement, self._cg.pressure
@@ -210,18 +211,18 @@ class LaggedTerms:
         return closed - displacement, slopes
 
     def _approach(self) -> float:
-        """The present approach; before the first problem is set, that of a contact without shear."""
+        """Return the present approach; before the first problem is set, that of a contact without shear."""
         return self._cg.approach if self._posed else 0.0
 
     def _gap_by_shear(self) -> Array:
-        """What shear that CG has not taken in adds to the closing of the gap (m)."""
+        """Return what shear that CG has not taken in adds to the closing of the gap (m)."""
         traction = self._held if self._weakly_coupled else self.traction
         if not self._problem.terms.coupled or not np.any(traction):
             return np.broadcast_to(0.0, traction.shape)
         return self._problem.elasticity.gap_by_shear(self._operator.shear(traction))
 
     def _shear_of_pressure(self) -> Array:
-        """The shear product of the pressure (Pa m), applied once a CG step: afterwards only its scale
+        """Return the shear product of the pressure (Pa m), applied once a CG step: afterwards only its scale
         changes, but under a cap."""
         pressure = self._cg.pressure
         total = float(pressure.sum())
@@ -232,7 +233,8 @@ class LaggedTerms:
         return product if applied in (0.0, total) else (total / applied) * product
 
     def _shear_of_held(self) -> Array | float:
-        """The shear product of the shear offset (Pa m), of a linear law applied once for an active set."""
+        """Return the shear product of the shear offset (Pa m), of a linear law applied once for an active
+        set."""
         law = self._problem.friction
         if law.is_linear and law.jump == 0:
             return 0.0

@@ -177,7 +177,7 @@ class LevelSolver:
         return not self.stagnated
 
     def _terms_are_current(self, goal: float) -> bool:
-        """Whether the residual meets the goal for the pressure after its scaling to the load as well.
+        """Return whether the residual meets the goal for the pressure after its scaling to the load as well.
 
         The lagged terms are those of the pressure before it. Where they feed back weakly, new ones change the
         residual by less than the scaling.
@@ -185,7 +185,7 @@ class LevelSolver:
         return not self.needs_mixing and self.residual + self.lagged.scaling <= goal
 
     def _cg_goal(self, tolerance: float) -> float:
-        """The residual to which CG reduces the fixed problem before the next update."""
+        """Return the residual to which CG reduces the fixed problem before the next update."""
         if not self.needs_mixing:
             share = constants.LAGGED_SHARE if self.lagged.has_lag else constants.PLAIN_SHARE
             return max(self._feedback * self.residual, share * tolerance)
@@ -193,7 +193,7 @@ class LevelSolver:
         return max(constants.REDUCTION * now, constants.MIXED_SHARE * tolerance)
 
     def _reduce(self, goal: float) -> float:
-        """CG steps until the fixed problem's residual, returned, meets the goal or stagnates."""
+        """Return the CG steps until the fixed problem's residual, returned, meets the goal or stagnates."""
         residual = best = max(self.cg.residuals())
         since = 0
         while residual > goal and since < _patience(best) and self.cg_iterations < self._budget:
@@ -208,7 +208,7 @@ class LevelSolver:
         return residual
 
     def _contact_suffices(self) -> bool:
-        """Whether no more than the contact of the active set's elements is asked of this state, and is
+        """Return whether no more than the contact of the active set's elements is asked of this state, and is
         decided but for a small share."""
         if self._enough is None or not self._enough(self.cg.contact):
             return False
@@ -228,5 +228,5 @@ class LevelSolver:
 
 
 def _patience(residual: float) -> int:
-    """CG steps without progress that are allowed; few where only rounding is left."""
+    """Return the CG steps without progress that are allowed; few where only rounding is left."""
     return constants.CG_PATIENCE if residual > constants.NEAR_ROUNDING else constants.ROUNDING_PATIENCE

@@ -67,7 +67,7 @@ def solve_fft(
 
 
 def _misfit(problem: Problem, start: InitialGuess) -> float:
-    """Relative error of a start as a solution on its own grid: of the load, and of the contact."""
+    """Return the relative error of a start as a solution on its own grid: of the load, and of the contact."""
     f, v = start.pressure, start.displacement + problem.gap
     total, energy = float(f.sum()), 0.5 * inner(f, start.displacement)
     gap = relative_gap(inner(f, v) - total * float(v.min()), energy)
@@ -92,7 +92,7 @@ def from_guess(problem: Problem, start: InitialGuess, counter: Counter, toleranc
 
 
 def _prolonged(problem: Problem, start: InitialGuess) -> tuple[Window, Array, Array, Mask]:
-    """A window; on it the prolonged pressure, the approach minus its ``v``, and the likely contact."""
+    """Return a window; on it the prolonged pressure, the approach minus its ``v``, and the likely contact."""
     grid = problem.grid
     v = resampled(start.displacement, grid.shape) + problem.gap
     pressure = resampled(start.pressure, grid.shape)
@@ -106,13 +106,13 @@ def _prolonged(problem: Problem, start: InitialGuess) -> tuple[Window, Array, Ar
 def _operators(
     problem: Problem, window: Window, counter: Counter, tolerance: float
 ) -> tuple[WindowInfluence, Apply]:
-    """The influence of a window on itself, and its preconditioner."""
+    """Return the influence of a window on itself, and its preconditioner."""
     operator = window_influence(problem.grid, problem.direction, window, counter, tolerance)
     return operator, SpectralPreconditioner(operator, problem.elasticity.symbol(operator.symbol))
 
 
 def _from_winkler(problem: Problem, counter: Counter, tolerance: float) -> LevelSolver:
-    """The solver of a grid without an initial guess."""
+    """Return the solver of a grid without an initial guess."""
     operator, precondition = _operators(problem, problem.grid.window, counter, tolerance)
     return LevelSolver(problem, operator, precondition, winkler_pressure(problem))
 

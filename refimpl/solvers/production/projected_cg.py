@@ -97,7 +97,7 @@ class ProjectedCG:
         return self._separate().mean if self._approach is None else self._approach
 
     def _separate(self) -> Separation:
-        """[PK 1] ``v`` of the present pressure."""
+        """Return ``v`` of the present pressure [PK 1]."""
         if self._separation is None:
             v = self.normal_displacement + self._b
             if not self._unweighted:
@@ -171,8 +171,8 @@ class ProjectedCG:
         self._norm = float(self._squares.sum())
 
     def _residual_on_contact(self) -> Array:
-        """``K (approach - v)`` on the contact set, at the approach that makes its part along the weights
-        zero."""
+        """Return ``K (approach - v)`` on the contact set, at the approach that makes its part along the
+        weights zero."""
         v, approach = self._separate().on_contact, self._approach
         if approach is None:
             approach = inner(self._squares, v) / self._norm
@@ -181,7 +181,7 @@ class ProjectedCG:
         return residual
 
     def _projected(self, values: Array) -> Array:
-        """``values`` on the contact set minus their part along the load's weights."""
+        """Return ``values`` on the contact set minus their part along the load's weights."""
         if self._target is None:
             return values
         values -= (inner(self._weights, values) / self._norm) * self._weights
@@ -202,13 +202,14 @@ class ProjectedCG:
         return direction
 
     def _carried_over(self, quotient: float) -> Array:
-        """The last direction times a quotient, on the present contact set."""
+        """Return the last direction times a quotient, on the present contact set."""
         assert self._direction is not None
         direction = quotient * self._direction
         return self._projected(direction) if self._exchanged else direction
 
     def _step_to_trial(self, residual: Array, direction: Array) -> bool:
-        """Step to the best point up to the trial, cut and scaled; False if the cut leaves nothing."""
+        """Take the step to the best point up to the trial, cut and scaled; False if the cut leaves
+        nothing."""
         change = (TRIAL_SHARE * self._length) * direction
         trial = self._pressing + change
         cut: Mask | None = None
@@ -242,7 +243,7 @@ class ProjectedCG:
         self.normal_displacement += moved
 
     def _within_bounds(self, pressing: Array) -> bool:
-        """Whether pressures on the free elements are allowed."""
+        """Return whether pressures on the free elements are allowed."""
         return bool(pressing.min() >= 0)
 
     def _longest_step(self, before: Array, change: Array) -> float:
@@ -263,7 +264,8 @@ class ProjectedCG:
             self._exchanged = True
 
     def _step_then_cut(self, residual: Array, direction: Array) -> None:
-        """Step by the exact length along the direction, then cut: two applications, without a trial."""
+        """Take the step by the exact length along the direction, then cut: two applications, without a
+        trial."""
         moved = self._apply(self._vectors.scatter(direction))
         length = step_share(residual, direction, self._vectors.gather_view(moved))
         if length:  # zero when the constraint alone fixes the set's pressure
@@ -280,7 +282,7 @@ class ProjectedCG:
             self.normal_displacement = self._apply(self.pressure)
 
     def _scale_to_target(self, *, displace: bool = True) -> None:
-        """[PK 8] Scale the pressure, and its displacement on request, to the load."""
+        """Scale the pressure [PK 8], and its displacement on request, to the load."""
         assert self._target is not None
         carried = inner(self._K, self.pressure)
         if carried == 0:  # without pressure there is no factor; the load error reports it

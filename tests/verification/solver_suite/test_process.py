@@ -28,6 +28,7 @@ from pathlib import Path
 def solve(problem):
     Path("pid.new").write_text(str(os.getpid()))
     os.rename("pid.new", "pid")
+    os.environ.clear()
     time.sleep(600)
 """
 SOLVERS = r'''
@@ -265,7 +266,10 @@ def test_an_interrupted_run_shows_and_writes_what_is_judged_so_far(
             for how in (signal.SIGINT, signal.SIGTERM)
         ),
         (["--exec", SLEEPER], signal.SIGKILL),
-        pytest.param(["--solver", "sleeper:solve"], signal.SIGHUP, marks=pytest.mark.nightly),
+        *(
+            pytest.param(["--solver", "sleeper:solve"], how, marks=pytest.mark.nightly)
+            for how in (signal.SIGHUP, signal.SIGKILL)
+        ),
     ],
 )
 def test_a_run_that_is_ended_takes_the_solver_with_it(
@@ -280,8 +284,8 @@ def test_a_run_that_is_ended_takes_the_solver_with_it(
     try:
         child.send_signal(how)
         assert child.wait(timeout=10) == (130 if how is signal.SIGINT else -how)
-        until(5, "the solver ended", lambda: not running(pid))
-        until(5, "no directory is left", lambda: not list((tmp_path / "tmp").iterdir()))
+        until(10, "the solver ended", lambda: not running(pid))
+        until(10, "no directory is left", lambda: not list((tmp_path / "tmp").iterdir()))
         _, err = child.communicate(timeout=10)  # whoever is left holds the pipes too
         assert err == ""
     finally:

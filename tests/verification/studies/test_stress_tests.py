@@ -15,12 +15,12 @@ import refimpl as rf
 from refimpl.operators.fft import FFTInfluence
 from tests.changed import changed
 from verification.cases.solvers.stress_tests import counted
+from verification.exact import exact_operators
 from verification.exact.dense_influence import DenseInfluence
 from verification.output.result_files import committed, read_result
 from verification.scenes.cross_checks import POLYMER, pressed
 from verification.stress_tests import (
     conditioning,
-    exact_operators,
     judge,
     limits,
     positive_definite,
@@ -64,6 +64,18 @@ def test_the_oracle_satisfies_the_contact_conditions_wherever_it_starts() -> Non
         assert max(abs(found[0].pressure - other.pressure)) < 1e-15 * max(found[0].pressure)
     assert abs(found[0].normal - BALL.load) < mp.mpf(10) ** -15
     assert min(found[0].pressure) >= 0
+
+
+@pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
+def test_continuation_arrives_at_the_state_that_the_solver_finds() -> None:
+    scene = replace(BALL, friction=rf.Friction(beta=3.0))  # in beta, from 1 on; the other in the load
+    for each in (scene, replace(BALL, friction=rf.Friction(beta=0.3), periodic=True)):
+        solution = rf.solve(each, 4, method="dense")
+        found = Oracle(each, 4).continued()
+        assert np.array_equal(found.contact, solution.contact.ravel())
+        assert solution.pressure.ravel() == pytest.approx(found.pressure.astype(float), rel=1e-9)
+    tau = replace(BALL, friction=rf.Friction(4e10, 0.0))
+    assert "finds no state" in judge.sought(Oracle(tau, 4))
 
 
 @pytest.mark.parametrize("periodic", [False, True], ids=["free", "periodic"])
@@ -225,10 +237,14 @@ def test_the_command_runs_an_axis(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         main(["--json", str(path), "--axis", "nonsense"])
 
 
-def test_the_committed_study_has_no_wrong_number() -> None:
+def test_the_committed_study_has_no_wrong_number_and_a_reason_for_every_failure() -> None:
     found = committed("extremes")
     assert len(found["states"]) >= 400
-    assert found["counts"]["wrong"] == 0
+    assert found["counts"]["wrong"] == found["counts"]["crash"] == 0
+    for row in found["states"]:
+        assert (row["kind"] is None) == (row["verdict"] == "right"), row["id"]
+        if row["kind"] == limits.Kind.BEYOND:
+            assert row["note"].startswith("a state exists"), row["id"]
 
 
 @pytest.mark.parametrize(

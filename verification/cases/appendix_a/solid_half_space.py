@@ -70,7 +70,7 @@ def scene_of(pair: WavyPair, M: int) -> rf.Scene:
 
 
 def _by_model(pair: WavyPair) -> tuple[rf.Solution, HalfSpaceError, float]:
-    """Solution, its error and its approach from first contact over the amplitude."""
+    """Return the solution, its error and its approach from first contact over the amplitude."""
     scene = scene_of(pair, M)
     solution = rf.solve(scene, M, tolerance=1e-6)
     first = (solution.approach + solution.details.problem.datum) / pair.amplitude

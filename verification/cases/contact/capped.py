@@ -177,7 +177,7 @@ def extreme_scene(seed: int) -> rf.Scene:
 
 
 def _is_right(scene: rf.Scene, *, oblique: bool) -> bool:
-    """Whether pressures that are called converged are the plain solver's, where it has a solution."""
+    """Return whether pressures that are called converged are the plain solver's, where it has a solution."""
     fft = rf.solve(scene, GRID_OF_HARDNESSES, plastic=True, oblique=oblique)
     if not fft.converged:
         return True

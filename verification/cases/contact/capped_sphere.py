@@ -166,7 +166,7 @@ HARDNESS = 0.8e9
 
 
 def _compared(laws: list[Loaded], peak: float) -> Measured:
-    """Largest relative difference of areas from those of a law at equal loads.
+    """Return the largest relative difference of areas from those of a law at equal loads.
 
     ``peak`` is the maximum pressure at first yield (Pa), by whose load and area a law counts.
     """

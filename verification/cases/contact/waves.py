@@ -186,7 +186,7 @@ def full_contact_sliding() -> Measured:
 
 
 def _full_contact_error(friction: rf.Friction, coupling: float, direction: float) -> float:
-    """Largest misfit of pressure (over its peak) and of the approach (relative) on 64 x 64."""
+    """Return the largest misfit of pressure (over its peak) and of the approach (relative) on 64 x 64."""
     gap = band_limited(64, seed=5)
     mean = 200 * np.pi * MODULUS * AMPLITUDE / WAVELENGTH  # 200 p* of the longest wave: no point opens
     exact = fourier.FullContact(gap, WAVELENGTH, MODULUS, mean, coupling, friction.beta, direction)

@@ -24,7 +24,8 @@ SEEDS, GRIDS = range(24), (32, 64, 96, 128, 192, 256, 512)
 
 
 def _moved(position: int) -> rf.Scene:
-    """The scene with the ball below, slid by up to an element of 32 x 32; position 0 is the scene itself."""
+    """Return the scene with the ball below, slid by up to an element of 32 x 32; position 0 is the scene
+    itself."""
     if position == 0:
         return SCENE
     direction, share = np.random.default_rng(position).uniform(0, 1, 2)

@@ -67,7 +67,7 @@ class _Dice:
 
 
 def _on_a_ball(seed: int) -> tuple[rf.Scene, float]:
-    """A ball, every second one rough, and an approach that presses it less than its load does (m)."""
+    """Return a ball, every second one rough, and an approach that presses it less than its load does (m)."""
     dice = _Dice(seed)
     R, a = SIDE * dice.log(3, 30), SIDE * dice.log(0.12, 0.28)
     scene, pressure = ball(R, a, dice.lower, dice.upper)
@@ -79,7 +79,7 @@ def _on_a_ball(seed: int) -> tuple[rf.Scene, float]:
 
 
 def _on_a_plane(seed: int) -> rf.Scene:
-    """A rough plane that repeats, under 0.05 to 0.4 of the pressure that would flatten it about."""
+    """Return a rough plane that repeats, under 0.05 to 0.4 of the pressure that would flatten it about."""
     dice = _Dice(seed)
     rough = rf.GaussianRoughness(SIDE * dice.log(1e-4, 1e-2), SIDE * dice.log(0.2, 0.5), seed=seed)
     pressure = Pair(lower=dice.lower, upper=dice.upper).reduced_modulus * rough.rms_slope

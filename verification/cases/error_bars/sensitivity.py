@@ -33,25 +33,28 @@ DRAWS, DRAWN_M = 64, 192
 
 
 def _unit(number: str, scene: rf.Scene, found: Sensitivity, parameter: str) -> float:
-    """What a derivative is multiplied by to be one of logarithms; of Q, which may vanish, over the load."""
+    """Return what a derivative is multiplied by to be one of logarithms; of Q, which may vanish, over the
+    load."""
     whole = scene.load if number == "binormal_force" else found.found[number]
     return found.parameters[parameter] / whole
 
 
 def _by_number(off: Sequence[tuple[str, float]]) -> dict[str, list[float]]:
-    """Differences by number, of those that have any."""
+    """Return the differences by number, of those that have any."""
     return {number: [d for of, d in off if of == number] for number in dict(off)}
 
 
 def _at_the_edge(solution: rf.Solution, number: str, excess: float) -> float:
-    """A number of a solution; mu without tau on a given ``excess`` (m^2), whose own change is the area's."""
+    """Return a number of a solution; mu without tau on a given ``excess`` (m^2), whose own change is the
+    area's."""
     if number != MU:
         return float(getattr(solution, number))
     return solution.friction_coefficient - solution.details.features.dmu_dA * excess
 
 
 def _differences(seed: int) -> tuple[list[tuple[str, float]], int]:
-    """Number and difference of each smooth derivative of a scene from central differences of full solves.
+    """Return the number and difference of each smooth derivative of a scene from central differences of full
+    solves.
 
     Differences are in per cents for one per cent of the parameter, Q's over the load. The second number
     counts the parameters that changed the contact.
@@ -104,7 +107,8 @@ def finite_differences() -> Measured:
 
 
 def _fine_derivatives(scene: rf.Scene, name: str, value: float) -> dict[str, tuple[float, float]]:
-    """Each number's derivative on the fine grid and its standard error: a parabola through small steps."""
+    """Return each number's derivative on the fine grid and its standard error: a parabola through small
+    steps."""
     solutions = [rf.solve(with_parameter(scene, name, value * (1 + step)), FINE) for step in SMALL]
     found = {}
     for number in NUMBERS:
@@ -115,7 +119,8 @@ def _fine_derivatives(scene: rf.Scene, name: str, value: float) -> dict[str, tup
 
 
 def _covered(seed: int) -> list[tuple[str, bool, float, float]]:
-    """Number, whether the bar covers, error and bar (per cents for one per cent) of derivatives of a scene.
+    """Return the number, whether the bar covers, error and bar (per cents for one per cent) of derivatives of
+    a scene.
 
     By the load, tau, a modulus, and a height or radius. Two standard errors of the fine derivative are added.
     """
@@ -174,7 +179,7 @@ def drawn_inputs() -> Measured:
 
 
 def _budget_over_draws(M: int) -> dict[str, float]:
-    """Each number's input part over the half-width of solves with drawn inputs, all on one grid."""
+    """Return each number's input part over the half-width of solves with drawn inputs, all on one grid."""
     scene = rf.read_scene("table1-rough")
     linear = budget(scene, rf.solve(scene, M), TOLERANCES)
     points = qmc.Sobol(len(TOLERANCES), rng=np.random.default_rng(2001)).random(DRAWS)

@@ -18,7 +18,7 @@ def _by_load(tier: str) -> dict[float, list[Point]]:
 
 
 def _series(tier: str) -> dict[str, object]:
-    """The figure's series: means and 95 % half widths over realisations, by load and model."""
+    """Return the figure's series: means and 95 % half widths over realisations, by load and model."""
     curves = _by_load(tier)
     first = curves[LOADS[0]]
     data: dict[str, object] = {
@@ -42,7 +42,7 @@ def _series(tier: str) -> dict[str, object]:
 
 
 def _over(tier: str, name: str, by_load: dict[float, list[float]]) -> dict[str, object]:
-    """One series a load over sigma_e and psi."""
+    """Return one series per load over sigma_e and psi."""
     first = _by_load(tier)[LOADS[0]]
     data: dict[str, object] = {"sigma_e (um)": [p.rms * 1e6 for p in first], "psi": [p.psi for p in first]}
     return data | {f"{name}, {load:g} N": values for load, values in by_load.items()}

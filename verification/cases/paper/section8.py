@@ -107,7 +107,7 @@ def threshold(tier: str) -> Measured:
 
 
 def _levelled(curve: fig8.Curve, share: float) -> float:
-    """sigma_e (m) where the rate of mu has fallen to a share of that at sigma_e = 0."""
+    """Return the sigma_e (m) where the rate of mu has fallen to a share of that at sigma_e = 0."""
     log_rate = np.log(np.maximum(curve.rate(curve.friction), 1e-6))
     return float(np.interp(-np.log(share), -log_rate, curve.middle))
 

@@ -100,7 +100,8 @@ def largest(tier: str) -> Measured:
 
 
 def _component_slope(h: float) -> float:
-    """Rms of central differences over 2 h on Eq. (9) of unit rms: ``sqrt((R(0) - R(2 h)) / 2) / h`` (1/m)."""
+    """Return the rms of central differences over 2 h on Eq. (9) of unit rms: ``sqrt((R(0) - R(2 h)) / 2) /
+    h`` (1/m)."""
     return math.sqrt(-math.expm1(-2.3 * (2 * h / CORRELATION_LENGTH) ** 2) / 2) / h
 
 

@@ -40,7 +40,7 @@ FINEST = {"quick": QUICK_MESH, "full": 512}  # elements a side
 
 
 def _estimates(tier: str, quantity: str) -> list[Estimate]:
-    """Estimates of a quantity in the rough columns of the table, on the finest mesh of a tier."""
+    """Return the estimates of a quantity in the rough columns of the table, on the finest mesh of a tier."""
     rows, mesh = rows_at(tier, "table3"), FINEST[tier]
     return [estimate(column(rows, quantity, lower_rms=flat, grid=mesh)) for flat in ROUGH]
 
@@ -146,7 +146,7 @@ def area_scatter(tier: str) -> Measured:
 
 
 def _reaches(found: Estimate, printed: float) -> bool:
-    """True where a scatter is within u, 95 %, of a printed one: two ensembles, three digits."""
+    """Return True where a scatter is within u, 95 %, of a printed one: two ensembles, three digits."""
     own = found.scatter * 2 / math.sqrt(2 * found.n - 2)
     return abs(found.scatter - printed) <= math.hypot(math.sqrt(2) * own, 0.0005)
 

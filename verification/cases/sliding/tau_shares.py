@@ -72,14 +72,14 @@ def in_shares(solution: rf.Solution) -> tuple[float, float]:
 
 
 def _mu(solver: LevelSolver) -> float:
-    """Friction coefficient of a solver's present state, Eq. (4)."""
+    """Return the friction coefficient of a solver's present state, Eq. (4)."""
     problem, lagged = solver.problem, solver.lagged
     forces = resultants(solver.cg.pressure, lagged.traction, lagged.slopes, problem.grid.element_area)
     return friction_coefficient(forces.friction, problem.nominal_load(forces.normal))
 
 
 def _solver(solution: rf.Solution) -> Callable[[Array, Array], LevelSolver]:
-    """The production solver on the solution's whole grid, from a pressure and with shares of tau.
+    """Return the production solver on the solution's whole grid, from a pressure and with shares of tau.
 
     The function returned raises RuntimeError where the solver does not converge.
     """

@@ -26,7 +26,7 @@ NUMBERS = ("approach", "normal_force", "friction_force", "contact_area", "max_pr
 
 
 def solved(method: Method, periodic: bool) -> rf.Solution:
-    """Table 1's rough scene; for the periodic one a rough flat."""
+    """Return Table 1's rough scene; for the periodic one a rough flat."""
     scene = rf.read_scene("rough-planes" if periodic else "table1-rough")
     if method == "dense" and not periodic:
         scene = replace(scene, load=7.0)
@@ -52,7 +52,8 @@ def in_a_process(method: Method, periodic: bool, *, transforms: int, blas: int) 
 
 
 def difference(one: dict[str, str], other: dict[str, str]) -> float:
-    """Largest relative difference of the pressures (to the peak) and of the numbers; 0 for equal bits."""
+    """Return the largest relative difference of the pressures (to the peak) and of the numbers; 0 for equal
+    bits."""
     if one == other:
         return 0.0
     first, second = (np.frombuffer(bytes.fromhex(answer["pressure"])) for answer in (one, other))

@@ -70,7 +70,7 @@ def autocorrelation() -> Measured:
 
 
 def _mean_product(z: Array, lag: int) -> float:
-    """Mean of z(x) z(x + lag) over both axes; the mean height of the ensemble, 0, is known."""
+    """Return the mean of z(x) z(x + lag) over both axes; the mean height of the ensemble, 0, is known."""
     n = len(z) - lag
     return float((np.mean(z[:n] * z[lag:]) + np.mean(z[:, :n] * z[:, lag:])) / 2.0)
 

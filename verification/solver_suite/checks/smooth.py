@@ -103,7 +103,7 @@ def _load_doubling(entrant: Entrant) -> Measured:
 
 
 def _punch(entrant: Entrant, inside: Mask, side: float) -> Pressed:
-    """A flat punch at an approach of 1 mm; the elements outside it stand off by 1 m."""
+    """Return a flat punch at an approach of 1 mm; the elements outside it stand off by 1 m."""
     return entrant.press(np.where(inside, 0.0, 1.0), side, approach=1e-3)
 
 

@@ -71,13 +71,13 @@ def _coupled(change: Callable[[Coupling], Coupling]) -> Solver:
 
 
 def _between_nodes(problem: ContactProblem) -> ContactProblem:
-    """Heights half an element off along x: the mean of two neighbours."""
+    """Return the heights half an element off along x: the mean of two neighbours."""
     gap = (problem.gap + np.roll(problem.gap, 1, axis=0)) / 2
     return replace(problem, gap=gap - gap.min())
 
 
 def _mean_pressure_lost(problem: ContactProblem) -> ContactProblem:
-    """The load as a mean pressure on (M - 1) x (M - 1) elements, as between nodes."""
+    """Return the load as a mean pressure on (M - 1) x (M - 1) elements, as between nodes."""
     if problem.load is None:
         return problem
     return replace(problem, load=problem.load * (1 - 1 / problem.M) ** 2)
@@ -89,7 +89,7 @@ def _edges_exchanged(problem: ContactProblem) -> ContactProblem:
 
 
 def _pulling(problem: ContactProblem) -> Array:
-    """The contact's neighbours pull with a thousandth of the peak; the load is made up for."""
+    """Let the contact's neighbours pull with a thousandth of the peak; the load is made up for."""
     pressure = right(problem)
     contact = pressure > 0
     if not contact.any():

@@ -95,7 +95,8 @@ def certified(problem: ContactProblem) -> Certified:
 
 
 def _apart(problem: ContactProblem) -> Bounds:
-    """Without contact the pressures are exact: no element penetrates, and the solution is unique."""
+    """Return the bounds without contact: the pressures are exact: no element penetrates, and the solution is
+    unique."""
     touch = problem.approach_from_touch
     if touch is None or touch > 0:
         raise NotCertified("the solver found no contact")

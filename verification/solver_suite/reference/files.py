@@ -175,5 +175,5 @@ def licence() -> str:
 
 
 def _text(name: str) -> str:
-    """Text of the folder that is filled in."""
+    """Return the text of the folder that is filled in."""
     return (HERE / "texts" / name).read_text(encoding="utf-8")

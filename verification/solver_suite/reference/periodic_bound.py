@@ -94,5 +94,5 @@ class _Symbols:
 
 
 def _rounding(v: Array, touch: float) -> float:
-    """Rounding of one element's v (m)."""
+    """Return the rounding of one element's v (m)."""
     return ROUNDING * float(np.finfo(float).eps) * (math.log2(v.size) * float(np.linalg.norm(v)) + abs(touch))

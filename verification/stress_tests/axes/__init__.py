@@ -21,7 +21,7 @@ AXES: dict[str, Callable[[], Iterator[Extreme]]] = {
 
 
 def states(name: str) -> Iterator[tuple[str, Extreme]]:
-    """Yield the ids and states of an axis; raises ValueError when two have one id."""
+    """Ids and states of an axis; raises ValueError when two have one id."""
     seen = set()
     for extreme in AXES[name]():
         unique = f"{name}/{extreme.series}/{extreme.at}"

@@ -33,7 +33,7 @@ BETAS = (1e-12, 1e-3, 0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 100.0, 1e3, 1e6)
 
 
 def plane(periodic: bool) -> rf.Scene:
-    """Return a steel flat on a polymer of rough, then of wavy form that is pressed flat at about 1e-3 E*."""
+    """A steel flat on a polymer of rough, then of wavy form that is pressed flat at about 1e-3 E*."""
     wave = np.cos(2 * np.pi * np.arange(M) / M)
     rough = 2e-7 * np.random.default_rng(7).standard_normal((M, M)) + 5e-7 * np.add.outer(wave, wave)
     return on(rough, periodic=periodic, friction=rf.Friction(0.0, 0.12))
@@ -42,13 +42,13 @@ def plane(periodic: bool) -> rf.Scene:
 def on(
     heights: Array, load: float = 1.0, *, periodic: bool = False, friction: rf.Friction = COULOMB
 ) -> rf.Scene:
-    """Return a steel flat on a polymer with the given heights."""
+    """A steel flat on a polymer with the given heights."""
     flat = pressed(radius=None, rms=None, side=SIDE, load=load, direction=0.7, periodic=periodic)
     return replace(flat, lower=rf.Body(POLYMER, heights), friction=friction)
 
 
 def loads() -> Iterator[Extreme]:
-    """Yield mean pressures over E* on every kind of scene; atoms under femtonewtons to micronewtons."""
+    """Mean pressures over E* on every kind of scene; atoms under femtonewtons to micronewtons."""
     smooth = rf.Friction(0.0, 0.12)
     ball = pressed(lower=POLYMER, rms=0.5e-6, direction=0.7, friction=smooth)
     with_tau = replace(ball, friction=TABLE1)
@@ -65,14 +65,14 @@ def loads() -> Iterator[Extreme]:
 
 
 def peak(i: int, j: int, height: float = 1e-7) -> Array:
-    """Return one high element on a flat."""
+    """One high element on a flat."""
     z = np.zeros((M, M))
     z[i, j] = height
     return z
 
 
 def at_the_border() -> dict[str, Array]:
-    """Return heights whose contact begins at the border of the domain."""
+    """Heights whose contact begins at the border of the domain."""
     x = (np.arange(M) + 0.5) / M
     ramp = 1e-6 * np.add.outer(x, 0 * x)
     bowl = 1e-6 * np.add.outer((x - 0.5) ** 2, (x - 0.5) ** 2)
@@ -84,7 +84,7 @@ def at_the_border() -> dict[str, Array]:
 
 
 def contact_sets() -> Iterator[Extreme]:
-    """Yield prescribed approaches from apart to deep; peaks that alone carry the load; flats; borders."""
+    """Prescribed approaches from apart to deep; peaks that alone carry the load; flats; borders."""
     for method in SOLVERS:
         for approach in APPROACHES:
             for series, law in (("approach", COULOMB), ("approach with tau", TABLE1)):
@@ -105,8 +105,7 @@ def contact_sets() -> Iterator[Extreme]:
 
 
 def pair(upper: rf.Material, lower: rf.Material, beta: float = 0.3) -> rf.Scene:
-    """Return the ball on a rough flat, with high friction, at a mean pressure of 1e-4 of the pair's
-    modulus."""
+    """The ball on a rough flat, with high friction, at a mean pressure of 1e-4 of the pair's modulus."""
     scene = pressed(upper=upper, lower=lower, rms=0.5e-6, direction=0.7)
     load = 1e-4 * scene.materials.reduced_modulus * scene.lengths[0] ** 2
     tau = 1e-2 * load / scene.lengths[0] ** 2
@@ -115,12 +114,12 @@ def pair(upper: rf.Material, lower: rf.Material, beta: float = 0.3) -> rf.Scene:
 
 @caught
 def of_ratios(upper: float, lower: float, method: Method) -> Judged:
-    """Judge bodies of two Poisson's ratios, which may be refused."""
+    """Bodies of two Poisson's ratios, which may be refused."""
     return by_oracle(pair(rf.Material(2e11, upper), rf.Material(3e9, lower)), M, method)
 
 
 def materials() -> Iterator[Extreme]:
-    """Yield Poisson's ratio of one body, of both; the modulus of the lower body over the upper one's."""
+    """Poisson's ratio of one body, of both; the modulus of the lower body over the upper one's."""
     for method in SOLVERS:
         of_one = [("nu of the lower body", STEEL.nu, nu) for nu in RATIOS]
         for series, upper, nu in (*of_one, *(("nu of both", nu, nu) for nu in RATIOS[1:-1])):
@@ -132,14 +131,14 @@ def materials() -> Iterator[Extreme]:
 
 
 def sheared(tau: float, beta: float, *, soft_below: bool = True) -> rf.Scene:
-    """Return a ball on a rough flat; tau in units of 40 MPa, about the peak pressure."""
+    """A ball on a rough flat; tau in units of 40 MPa, about the peak pressure."""
     upper, lower = (STEEL, POLYMER) if soft_below else (POLYMER, STEEL)
     law = rf.Friction(40e6 * tau, beta)
     return pressed(upper=upper, lower=lower, rms=0.5e-6, load=30.0, direction=0.7, friction=law)
 
 
 def friction() -> Iterator[Extreme]:
-    """Yield either sign of the coupling, half-space and periodic, slope terms kept, dropped and corrected."""
+    """Either sign of the coupling, half-space and periodic, slope terms kept, dropped and corrected."""
     flat: dict[str, Any] = {"oblique": False}
     corrected: dict[str, Any] = {"slope_correction": True}
     for method in SOLVERS:

@@ -25,7 +25,7 @@ INTEGRALS: dict[str, tuple[Callable[..., Any], Callable[..., Any]]] = {
 
 @caught
 def against_digits(kind: str, x: float, y: float, dx: float, dy: float) -> Judged:
-    """Judge one value against 50 digits; at x = 0 the tangential one is zero exactly."""
+    """One value against 50 digits; at x = 0 the tangential one is zero exactly."""
     integral, exact = INTEGRALS[kind]
     value = float(integral(x, y, dx, dy))
     expected = exact(x, y, dx, dy)
@@ -37,8 +37,7 @@ def against_digits(kind: str, x: float, y: float, dx: float, dy: float) -> Judge
 
 
 def kernels() -> Iterator[Extreme]:
-    """Yield points along the axis, off it, near the zero of the odd kernel, in thin elements, in tiny and
-    vast units."""
+    """Along the axis, off it, near the zero of the odd kernel, in thin elements, in tiny and vast units."""
     for kind in INTEGRALS:
         for x in OFFSETS:
             for direction, y in (("on the axis", 0.0), ("off the axis", 0.75)):

@@ -44,8 +44,7 @@ SETUP = Setup((Source(-1.0, -1.0, 2.0**-7, 1.0), Source(1.0, 1.0, 2.0**-7, 1.0))
 
 @caught
 def wedge_at(gamma: float, r: float) -> Judged:
-    """Judge stresses half-way to a face against the other formulation in 18 digits, or the exact limits of
-    r."""
+    """Stresses half-way to a face against the other formulation in 18 digits, or the exact limits of r."""
     theta = 0.5 * (math.pi / 2 - gamma)
     try:
         found = np.array(wedge.stresses(r, theta, gamma)).ravel()
@@ -61,7 +60,7 @@ def wedge_at(gamma: float, r: float) -> Judged:
 
 
 def _limits(gamma: float, theta: float, r: float) -> Array:
-    """r -> 0: -1 all round. r -> infinity: the resultant's radial field (Michell 1900)."""
+    """Return the limits. r -> 0: -1 all round. r -> infinity: the resultant's radial field (Michell 1900)."""
     if r < 1:
         return np.array([-1.0, -1.0, 0.0])
     with mp.workdps(40):  # doubles leave 8 digits of the opening of the narrowest wedge
@@ -72,7 +71,7 @@ def _limits(gamma: float, theta: float, r: float) -> Array:
 
 @caught
 def pressed(nu: float, *, formulation: str, jitter: float = 0.0) -> Judged:
-    """Judge the surface displacement of a flat body under a strip against the closed form."""
+    """Surface displacement of a flat body under a strip against the closed form."""
     direct = formulation == "direct"
     if direct and nu == 0.5:
         remedy = "use the mixed form"
@@ -86,7 +85,7 @@ def pressed(nu: float, *, formulation: str, jitter: float = 0.0) -> Judged:
 
 
 def distorted(mesh: MeshTri, jitter: float) -> MeshTri:
-    """Return the mesh with inner vertices moved by up to ``jitter`` of the shortest edge that meets them."""
+    """The mesh with inner vertices moved by up to ``jitter`` of the shortest edge that meets them."""
     edges = mesh.facets
     lengths = np.hypot(*(mesh.p[:, edges[0]] - mesh.p[:, edges[1]]))
     shortest = np.full(mesh.p.shape[1], np.inf)
@@ -98,7 +97,7 @@ def distorted(mesh: MeshTri, jitter: float) -> MeshTri:
 
 
 def wedges() -> Iterator[Extreme]:
-    """Yield all angles by all radii; the limits only where the slowest mode has died out by then."""
+    """All angles by all radii; the limits only where the slowest mode has died out by then."""
     for gamma in GAMMAS:
         # next to flat the field at the tip still decays like r^(4 gamma / pi): no limit within doubles
         limits = [r for r in LIMIT_RADII if r > 1 or gamma == 0 or gamma >= 0.3]
@@ -108,7 +107,7 @@ def wedges() -> Iterator[Extreme]:
 
 
 def finite_elements() -> Iterator[Extreme]:
-    """Yield Poisson's ratio up to 1/2 in both formulations; inner vertices moved, at nu = 0.3 and 0.4999."""
+    """Poisson's ratio up to 1/2 in both formulations; inner vertices moved, at nu = 0.3 and 0.4999."""
     for form in ("direct", "mixed"):
         for nu in FEM_RATIOS:
             if form == "direct" or nu > 0:  # 1 / lambda does not exist elsewhere

@@ -24,17 +24,17 @@ RMS_SLOPES = (0.1, 0.3, 1.0, 2.0, 3.0)
 HARDNESS = [10.0**k for k in (-6, -3, -1, 0.1, 0.3, 1, 2, 3, 6)]
 """Over the mean pressure."""
 HEIGHTS: dict[str, Array] = {
-    "stripes at the Nyquist length": (-1.0) ** ROW,
-    "checkerboard at the Nyquist length": (-1.0) ** (ROW + COLUMN),
+    "stripes at the Nyquist length": np.asarray((-1.0) ** ROW),
+    "checkerboard at the Nyquist length": np.asarray((-1.0) ** (ROW + COLUMN)),
     "equal asperities": -((ROW % 3 - 1.0) ** 2) - (COLUMN % 3 - 1.0) ** 2,
-    "equal punches": 1.0 * ((ROW % 3 < 2) & (COLUMN % 3 < 2)),
+    "equal punches": np.where((ROW % 3 < 2) & (COLUMN % 3 < 2), 1.0, 0.0),
     "all but one element": -10.0 * ((ROW == 2) & (COLUMN == 3)),
 }
 """In units of 1e-7 m."""
 
 
 def pressed_on(heights: Array, pressure: float, width: float = SIDE, *, periodic: bool = False) -> rf.Scene:
-    """A steel flat on heights at a mean pressure over E*; ``width`` (m) is the domain's along y."""
+    """Press a steel flat on heights at a mean pressure over E*; ``width`` (m) is the domain's along y."""
     scene = on(heights, periodic=periodic)
     pixel = SIDE / heights.shape[0], width / heights.shape[1]
     lower = rf.Body(POLYMER, rf.ArraySurface(heights, pixel=pixel))
@@ -43,25 +43,26 @@ def pressed_on(heights: Array, pressure: float, width: float = SIDE, *, periodic
 
 
 def hardened(ratio: float, *, periodic: bool) -> rf.Scene:
-    """A rough flat of a hardness over the mean pressure, on slopes of about 1e-2."""
+    """Return a rough flat of a hardness over the mean pressure, on slopes of about 1e-2."""
     scene = pressed_on(1e-6 * noise(6, 6), 1e-4, periodic=periodic)
     hardness = ratio * scene.load / SIDE**2
     return replace(scene, lower=replace(scene.lower, material=replace(POLYMER, hardness=hardness)))
 
 
 def noise(m: int, n: int) -> Array:
-    """Heights of variance 1 without correlation."""
+    """Return heights of variance 1 without correlation."""
     return np.random.default_rng(m + n).standard_normal((m, n))
 
 
 def steep(slope: float) -> Array:
-    """Noise of 24 x 24 elements with an rms slope."""
+    """Return noise of 24 x 24 elements with an rms slope."""
     z = noise(24, 24)
     return np.asarray(z * (slope / np.sqrt(np.mean(np.square(np.gradient(z, SIDE / 24))))))
 
 
 def shapes() -> Iterator[Extreme]:
-    """Lines, aspects, slopes and hardness by the dense solver; the others, of both solvers, by the oracle."""
+    """Yield lines, aspects, slopes and hardness by the dense solver; the others, of both solvers, by the
+    oracle."""
     heights = [
         *(("line", f"{m} x {n}", n / m, 1e-7 * noise(m, n), 1e-4, SIDE * n / m) for m, n in LINES),
         *(("aspect", f"{aspect:g}", aspect, 1e-7 * noise(6, 6), 1e-4, SIDE * aspect) for aspect in ASPECTS),

@@ -28,22 +28,21 @@ inverse (condition number 30 at this size) and the relative size of gap and appr
 
 
 def rough_ball(heights: Array, radius: float = 0.14, load: float = 1.0) -> rf.Scene:
-    """Return a ball on a polymer with the given heights."""
+    """A ball on a polymer with the given heights."""
     law = replace(TABLE1, tau=1e5)
     ball = pressed(radius=radius, rms=None, friction=law, load=load, side=SIDE, direction=0.7)
     return replace(ball, lower=rf.Body(POLYMER, heights))
 
 
 def sloped(angle: float) -> Array:
-    """Return noise whose largest central difference is the tangent of an angle."""
+    """Noise whose largest central difference is the tangent of an angle."""
     step = np.abs(np.gradient(NOISE, SIDE / M, axis=0)).max()
     return np.asarray(NOISE * (math.tan(angle) / step))
 
 
 @caught
 def shifted(offset: float, *, dyadic: bool, method: Method) -> Judged:
-    """Judge heights plus an offset against the same heights without one: no more is lost than the data
-    lost."""
+    """Heights plus an offset against the same heights without one: no more is lost than the data lost."""
     z = np.round(NOISE * 2**8) * 2.0**-28 if dyadic else 1e-6 * NOISE
     far = z + offset * float(np.ptp(z))
     lost = float(np.abs((far - far.min()) - (z - z.min())).max()) / float(np.ptp(z))
@@ -56,7 +55,7 @@ def shifted(offset: float, *, dyadic: bool, method: Method) -> Judged:
 
 
 def ties() -> dict[str, Array]:
-    """Return heights with exact ties: equal steps, duplicates, symmetries."""
+    """Heights with exact ties: equal steps, duplicates, symmetries."""
     i, j = np.indices((M, M))
     return {
         "checkerboard": 1e-7 * ((i + j) % 2),
@@ -71,7 +70,7 @@ def ties() -> dict[str, Array]:
 
 
 def topography() -> Iterator[Extreme]:
-    """Yield amplitudes, slopes, offsets and ties for both solvers."""
+    """Amplitudes, slopes, offsets and ties for both solvers."""
     for method in SOLVERS:
         for amplitude in AMPLITUDES:
             yield state("rms", f"{amplitude:.0e} m", amplitude, rough_ball(amplitude * NOISE), method)

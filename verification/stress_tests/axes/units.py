@@ -34,7 +34,7 @@ SETTINGS: tuple[tuple[Method, bool], ...] = (("fft", False), ("fft", True), ("de
 def scene(
     length: float = 1.0, stress: float = 1.0, similar: float = 1.0, *, periodic: bool, oblique: bool = True
 ) -> rf.Scene:
-    """Return a sphere (or, periodic, a flat) on a rough flat with lengths, stresses or load scaled."""
+    """A sphere (or, periodic, a flat) on a rough flat with lengths, stresses or load scaled."""
     flat = 1.0 if oblique else FLAT
     z = HEIGHTS[: SIZES["dense"], : SIZES["dense"]] * (length * similar**2 * flat)
     ball: rf.Surface = rf.Flat() if periodic else rf.Sphere(0.14 * length / flat)
@@ -50,14 +50,14 @@ def scene(
 
 
 def solved(method: Method, periodic: bool, oblique: bool, *scales: float) -> rf.Solution:
-    """Return the solution of a scene with lengths, stresses and load scaled."""
+    """The solution of a scene with lengths, stresses and load scaled."""
     scaled = scene(*scales, periodic=periodic, oblique=oblique)
     return rf.solve(scaled, SIZES[method], method=method, tolerance=TOLERANCE, oblique=oblique)
 
 
 @cache
 def unscaled(method: Method, periodic: bool, oblique: bool) -> rf.Solution:
-    """Return the solution that all scaled ones are compared with."""
+    """The solution that all scaled ones are compared with."""
     found = solved(method, periodic, oblique)
     if found.status is not rf.Status.CONVERGED:
         raise ArithmeticError(f"the unscaled scene ended {found.status.value}")
@@ -67,7 +67,7 @@ def unscaled(method: Method, periodic: bool, oblique: bool) -> rf.Solution:
 def change(
     scaled: rf.Solution, base: rf.Solution, length: float, stress: float, similar: float, *, bars: bool
 ) -> tuple[float, str]:
-    """Return the largest relative change of pressure field, approach, area, forces and friction coefficient.
+    """Largest relative change of pressure field, approach, area, forces and friction coefficient.
 
     With ``bars``, of the grid's part of their error bars as well.
     """
@@ -103,7 +103,7 @@ def run(method: Method, periodic: bool, length: float, stress: float, similar: f
 
 
 def scalings() -> Iterator[tuple[str, str, float, tuple[float, float, float], float]]:
-    """Yield ``(what, at, factor, (length, stress, similar), limit)``."""
+    """``(what, at, factor, (length, stress, similar), limit)``."""
     for power, exponents, limit in ((2.0, TWOS, 0.0), (10.0, TENS, LIMIT)):
         for k in exponents:
             factor, at = power**k, f"{power:g}^{k}"
@@ -118,7 +118,7 @@ def scalings() -> Iterator[tuple[str, str, float, tuple[float, float, float], fl
 
 
 def units() -> Iterator[Extreme]:
-    """Yield every scaling for the production solver (half-space and periodic) and for the dense one."""
+    """Every scaling for the production solver (half-space and periodic) and for the dense one."""
     seen = set()
     for what, at, factor, parts, limit in scalings():
         for method, periodic in SETTINGS:

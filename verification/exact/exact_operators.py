@@ -24,7 +24,7 @@ Exact = Any
 
 @cache
 def normal(M: int, periodic: bool) -> Exact:
-    """Return ``I[1/rho]`` between all pairs of unit elements, ``(M^2, M^2)``; periodic: without mean."""
+    """``I[1/rho]`` between all pairs of unit elements, ``(M^2, M^2)``; periodic: without mean."""
     if periodic:
         return _from_modes(M, "normal")
     return _pairs(M, lambda i, j: kernel_reference.normal(i, j, 1.0, 1.0))
@@ -32,7 +32,7 @@ def normal(M: int, periodic: bool) -> Exact:
 
 @cache
 def tangential(M: int, periodic: bool) -> tuple[Exact, Exact]:
-    """Return ``I[x/rho^2]`` and ``I[y/rho^2]`` between all pairs of unit elements."""
+    """``I[x/rho^2]`` and ``I[y/rho^2]`` between all pairs of unit elements."""
     if periodic:
         return _from_modes(M, "x"), _from_modes(M, "y")
     return (
@@ -42,7 +42,7 @@ def tangential(M: int, periodic: bool) -> tuple[Exact, Exact]:
 
 
 def _pairs(M: int, value: Any) -> Exact:
-    """Matrix over (field, source) of a function of their offset in elements."""
+    """Return the matrix over (field, source) of a function of their offset in elements."""
     table = {(i, j): value(float(i), float(j)) for i in range(1 - M, M) for j in range(1 - M, M)}
     matrix = np.empty((M * M, M * M), dtype=object)
     for n, m in np.ndindex(matrix.shape):
@@ -63,7 +63,7 @@ def _from_modes(M: int, what: str) -> Exact:
 
 
 def _mode(p: int, r: int, turn: tuple[Exact, Exact], M: int, what: str) -> Exact:
-    """One mode's share at one offset; a real field has no sine at the Nyquist frequency."""
+    """Return one mode's share at one offset; a real field has no sine at the Nyquist frequency."""
     squared = p * p + r * r
     if what == "normal":
         return M / mp.sqrt(squared) * turn[0]
@@ -72,8 +72,7 @@ def _mode(p: int, r: int, turn: tuple[Exact, Exact], M: int, what: str) -> Exact
 
 
 def difference(M: int, axis: int, periodic: bool) -> Exact:
-    """Return the matrix of the central differences per element along an axis, one-sided at the border or
-    wrapped."""
+    """Matrix of the central differences per element along an axis, one-sided at the border or wrapped."""
     matrix = np.full((M * M, M * M), mp.mpf(0), dtype=object)
     for i, j in np.ndindex(M, M):
         k = (i, j)[axis]
