@@ -159,8 +159,9 @@ def _of_container(library: ModuleType, path: Path, given: Overrides) -> RawHeigh
         found = reader.container(k)[j]
         if found.dim != 2 or not found.is_uniform:
             raise InputError("path", str(path), f"a map of heights ({member.name!r} is a line scan)")
-        form = library.IO.detect_format(member.open)
-        if form == "asc" and member.open().read(len(WYKO)) in (WYKO, WYKO.encode()):
+        stream = member.open
+        form = library.IO.detect_format(stream)
+        if form == "asc" and stream().read(len(WYKO)) in (WYKO, WYKO.encode()):
             raise InputError("path", str(path), f"{member.name!r} unpacked: Wyko's text is read on its own")
         reading = _record(path, form, found, True, given, said)
     names = tuple(m.name for *_, m in members)

@@ -25,7 +25,7 @@ from refimpl.grid import Array, Mask
 from verification.exact import exact_operators as operators
 from verification.exact.exact_operators import DIGITS, Exact
 
-STEPS, REFINEMENTS = 60, 20  # limits of Newton's steps in doubles, and in digits
+STEPS, REFINEMENTS = 60, 20  # at most: steps of Newton in doubles, and in digits
 CLOSE, SETTLED = 1e-8, 1e-20  # largest last step: relative to the state; in digits, below a double's
 TIE = 1e-26  # share of the maximum pressure or gap: signs nearer to zero are ties
 TINY = 1e-60  # complex step
