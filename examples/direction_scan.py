@@ -21,7 +21,8 @@ print(f"{COUNT} directions, {sum(s.status.name in ('CONVERGED', 'CYCLED') for s 
 print(f"mu from {mu.min():.4f} to {mu.max():.4f}, Q/P from {across.min():+.4f} to {across.max():+.4f}")
 
 figure, (upper, lower) = plt.subplots(2, 1, figsize=(5.6, 5), sharex=True, layout="constrained")
-upper.plot(np.degrees(angles), mu, "o-", ms=4)
+bars = [s.error("friction_coefficient_corrected") for s in found]
+upper.errorbar(np.degrees(angles), mu, yerr=bars, fmt="o-", ms=4, capsize=2)
 upper.set(ylabel="friction coefficient mu")
 lower.plot(np.degrees(angles), across, "s-", ms=4, color="C1")
 lower.axhline(0, color="k", lw=0.8)

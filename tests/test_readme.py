@@ -12,11 +12,12 @@ from tests.documents import ROOT, blocks, commands, run
 from verification.output.result_files import committed
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGE_OF_BARS = (ROOT / "docs/error-bars.md").read_text(encoding="utf-8")
 
 
 def test_every_block_runs_and_prints_what_the_readme_says(tmp_path: Path) -> None:
     """Commands of make are what CI runs."""
-    assert run(re.sub(r"^\$ make .*\n", "", README, flags=re.M), tmp_path) == 1
+    assert run(re.sub(r"^\$ make .*\n", "", README, flags=re.M), tmp_path) == 2
     assert not any(tmp_path.iterdir())
 
 
@@ -61,7 +62,7 @@ def test_what_it_names_is_there() -> None:
 
 def stated_by_class(head: str) -> dict[str, list[str]]:
     """The cells of a table on the page of error bars, by class."""
-    lines = (ROOT / "docs/error-bars.md").read_text(encoding="utf-8").splitlines()
+    lines = PAGE_OF_BARS.splitlines()
     start = next(k for k, line in enumerate(lines) if line.startswith(head)) + 2
     rows = (
         [cell.strip() for cell in line.strip("|").split("|")]
@@ -70,7 +71,7 @@ def stated_by_class(head: str) -> dict[str, list[str]]:
     return {name: cells for name, *cells in rows}
 
 
-def test_the_corrected_mu_of_every_class_is_that_of_the_study() -> None:
+def test_the_classes_covered_least_are_those_of_the_study() -> None:
     rows: dict[str, dict[str, Any]] = {}
     for row in committed("coverage_corrected")["table"]:
         rows.setdefault(row["class"], {})[row["number"]] = row
@@ -79,7 +80,9 @@ def test_the_corrected_mu_of_every_class_is_that_of_the_study() -> None:
         row = numbers["friction_coefficient_corrected"]
         found[kind] = [f"{100 * row['held']:.0f} %", f"{row['median_bar_over_error']:.1f}"]
     del found[None]
-    assert stated_by_class("| class of scene | corrected mu") == found
+    lower = {kind: cells for kind, cells in found.items() if int(cells[0].split()[0]) < 98}
+    assert f"In {len(found) - len(lower)} of {len(found)} classes 98 to 100 %" in PAGE_OF_BARS
+    assert stated_by_class("| class of scene | corrected mu") == lower
 
 
 def test_the_gain_of_the_correction_is_that_of_the_study() -> None:
@@ -94,7 +97,7 @@ def test_the_gain_of_the_correction_is_that_of_the_study() -> None:
         median(median(values[k, mu, part]) / median(values[k, f"{mu}_corrected", part]) for k in kinds)
         for part in ("error", "bar")
     )
-    page = " ".join((ROOT / "docs/error-bars.md").read_text(encoding="utf-8").split())
+    page = " ".join(PAGE_OF_BARS.split())
     assert f"{round(error)} times smaller than that of the summed mu. Its bar is {bar:.1f} times sh" in page
     rows = [row for row in study["table"] if row["number"] == f"{mu}_corrected"]
     (total,) = (row for row in rows if row["class"] is None)
