@@ -11,8 +11,8 @@ from verification.cli.output import check_outputs, emit, files_of, refusal
 EPILOG = """examples:
   rough-friction tradeoff table1-rough --grids 64,128,256 --reference 1024
 
-What solve --accuracy asks for, and --explain --accuracy forecasts, stands in the last column: the grid
-whose error bar is short enough. The column before it is known from the reference alone.
+Last column: the grid whose error bar is short enough, as solve --accuracy requests it and --explain
+forecasts it. Column before: the grid whose error against the reference is.
 """
 OPTIONS: Options = {
     "scene": SCENE,
