@@ -9,7 +9,6 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from reports import agreement
-from reports.agreement_figure import AGREEMENT
 from reports.catalogue import figures_of
 from reports.chapters import all_chapters, exhibits_of, subjects_of
 from reports.claims import judged, of_the_conversion, shown, statements
@@ -18,7 +17,7 @@ from reports.evidence import Evidence, gathered, groups, revisions_of
 from reports.evidence import rerun as rerun_with
 from reports.exhibit import Album
 from reports.findings import by_claim, plain_note
-from reports.front_page import front_page
+from reports.front_page import AGREEMENT, front_page
 from reports.results import Case, CaseDataError, compared, shaped, shown_status
 from reports.text import cell, decimals, interval, judgement, number, quoted, symbols
 

@@ -10,10 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from reports.evidence import gathered
-from reports.result_tables.accuracy import accuracy_costs, costs, coverage
-from reports.result_tables.markdown import RUN
+from reports.result_tables import RUN
+from reports.result_tables.code import accuracy_costs, checks, codes, costs, coverage, studies
 from reports.result_tables.paper import claims, hertz, table_3
-from reports.result_tables.verification import checks, codes, studies
 from verification.output.result_files import read_results
 
 FOLDER = Path(__file__).with_name("results")

@@ -1,8 +1,10 @@
-"""Nested friction laws compared by information criteria (AICc: Hurvich and Tsai 1989; BIC: Schwarz 1978).
+"""Nested friction laws compared by information criteria (AIC: Akaike 1974; BIC: Schwarz 1978).
 
 ``r = tau + beta f`` holds Coulomb's law (tau = 0) and constant shear (beta = 0), and is held by
 ``r = min(tau + beta f, r_max)``. The limited law is computed at the pressures of the fitted law, and all of
-them at further parameters as fitted, which count as parameters of each.
+them at further parameters as fitted, which count as parameters of each. Each row states its uncertainty, so
+``AIC = chi-square + 2 k`` needs no correction for few rows (that of Hurvich and Tsai 1989 is for a fitted
+variance).
 """
 
 from __future__ import annotations
@@ -19,25 +21,22 @@ from refimpl.identification.data_table import Row
 from refimpl.identification.fit import Fit
 from refimpl.identification.profile import BOUNDED
 
-DECISIVE = 6.0  # difference of AICc from which the worse law has little support
+DECISIVE = 6.0  # difference of AIC from which the worse law has little support
 
 
 @dataclass(frozen=True)
 class Law:
-    """A fitted law: parameters by name (Pa; beta 1), chi-square, AICc and BIC.
-
-    AICc is infinite where the rows are too few for it.
-    """
+    """A fitted law: parameters by name (Pa; beta 1), chi-square, AIC and BIC."""
 
     name: str
     parameters: Mapping[str, float]
     chi_square: float
-    aicc: float
+    aic: float
     bic: float
 
 
 def compare(rows: Sequence[Row], fitted: Fit) -> tuple[Law, ...]:
-    """Return the laws, ordered by AICc, and by BIC where AICc is infinite."""
+    """Return the laws, ordered by AIC."""
     measured = np.array([row.mu for row in rows])
     slopes = np.array([response.slopes[:BOUNDED] for response in fitted.responses])
     at_zero = fitted.predicted - slopes @ fitted.theta[:BOUNDED]
@@ -53,7 +52,7 @@ def compare(rows: Sequence[Row], fitted: Fit) -> tuple[Law, ...]:
         laws.append(_law(name, {parameter: float(x[0] / scale[k])}, misfit**2, len(root), further))
     if len(root) > 3:
         laws.append(_limited(fitted, measured))
-    return tuple(sorted(laws, key=lambda law: (law.aicc, law.bic)))
+    return tuple(sorted(laws, key=lambda law: law.aic))
 
 
 def _limited(fitted: Fit, measured: Array) -> Law:
@@ -91,8 +90,6 @@ def _limited(fitted: Fit, measured: Array) -> Law:
 
 
 def _law(name: str, parameters: Mapping[str, float], chi_square: float, n: int, further: int) -> Law:
-    k = len(parameters) + further
-    few = n - k - 1 <= 0
-    aicc = math.inf if few else chi_square + 2 * k + 2 * k * (k + 1) / (n - k - 1)
+    k, chi_square = len(parameters) + further, float(chi_square)
     values = {key: float(value) for key, value in parameters.items()}
-    return Law(name, values, float(chi_square), aicc, float(chi_square + k * math.log(n)))
+    return Law(name, values, chi_square, chi_square + 2 * k, chi_square + k * math.log(n))

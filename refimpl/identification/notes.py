@@ -118,8 +118,8 @@ def _model(result: Identification) -> Iterator[str]:
 def _law(result: Identification) -> Iterator[str]:
     best = result.laws[0]
     linear = next(law for law in result.laws if law.name == "tau + beta f")
-    if math.isfinite(linear.aicc) and linear.aicc - best.aicc > DECISIVE:
-        yield f"the law {best.name} describes the data better (AICc lower by {linear.aicc - best.aicc:.1f})"
+    if linear.aic - best.aic > DECISIVE:
+        yield f"the law {best.name} describes the data better (AIC lower by {linear.aic - best.aic:.1f})"
 
 
 def _limits(responses: Sequence[Response]) -> list[str]:

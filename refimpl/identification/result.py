@@ -51,7 +51,7 @@ class Identification:
     predictions : at the measured loads, then at the new ones
     chi_square, degrees, probability : of the residuals; ``residuals`` in standard uncertainties
     deleted : each row's deviation from the fit to the others, in standard uncertainties
-    laws : compared by AICc; proposal : further loads, where tau is not determined
+    laws : compared by AIC; proposal : further loads, where tau is not determined
     solves, passes : forward solves, and how often all rows were linearised
     """
 

@@ -82,7 +82,8 @@ class FixedContact:
         x, _ = scipy.sparse.linalg.gmres(
             jacobian, -change, rtol=_TOLERANCE, restart=_RESTART, maxiter=_CYCLES, M=plain
         )
-        left = float(np.linalg.norm(jacobian @ x + change) / np.linalg.norm(change))
+        with np.errstate(invalid="ignore"):  # nan where the change is not finite: no derivative is found
+            left = float(np.linalg.norm(jacobian @ x + change) / np.linalg.norm(change))
         return LinearResponse(*self._unpacked(x), left)
 
     def jacobian(self, x: Array) -> Array:

@@ -9,7 +9,7 @@ from reports.agreement import column_of
 from reports.claims import VERDICTS, Judged, judged
 from reports.evidence import Evidence
 from reports.exhibit import Column
-from reports.result_tables.markdown import RUN, Row, link, listing, origin, section
+from reports.result_tables import RUN, Row, link, listing, origin, section
 from reports.results import Case
 from reports.text import interval, quoted, symbols, unit_of
 

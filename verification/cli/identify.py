@@ -113,7 +113,7 @@ def document(found: Identification) -> dict[str, object]:
                 "law": law.name,
                 "parameters": dict(law.parameters),
                 "chi_square": law.chi_square,
-                "aicc": _finite(law.aicc),
+                "aic": law.aic,
                 "bic": law.bic,
             }
             for law in found.laws
@@ -169,8 +169,8 @@ def table(found: Identification) -> str:
         measured = f"{found.rows[k].mu:.4g}" if is_row else "-"
         residual = f"{found.residuals[k]:+.1f}" if is_row else "-"
         rows.append([f"{prediction.load:.4g}", measured, *_cells(prediction.mu), residual])
-    laws = [["law", "chi-square", "AICc", "BIC"]]
-    laws += [[one.name, f"{one.chi_square:.3g}", f"{one.aicc:.3g}", f"{one.bic:.3g}"] for one in found.laws]
+    laws = [["law", "chi-square", "AIC", "BIC"]]
+    laws += [[one.name, f"{one.chi_square:.3g}", f"{one.aic:.3g}", f"{one.bic:.3g}"] for one in found.laws]
     ended = (
         f"chi-square {found.chi_square:.3g} of {found.degrees} degrees of freedom "
         f"(probability {found.probability:.2g}); intervals by {found.method}; "

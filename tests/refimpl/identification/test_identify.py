@@ -241,10 +241,16 @@ def response(**changes: Any) -> Response:
 
 
 def test_criteria_of_a_law_count_its_own_and_the_further_parameters() -> None:
-    """Six rows, one parameter and one further: 3 + 2 * 2 + 2 * 2 * 3 / (6 - 2 - 1) and 3 + 2 ln 6."""
+    """Six rows, one parameter and one further: 3 + 2 * 2 and 3 + 2 ln 6."""
     law = _law("Coulomb", {"beta": 0.2}, 3.0, 6, further=1)
-    assert (law.aicc, law.bic) == (pytest.approx(11.0), pytest.approx(3 + 2 * math.log(6)))
-    assert _law("Coulomb", {"beta": 0.2}, 3.0, 3, further=1).aicc == math.inf
+    assert (law.aic, law.bic) == (pytest.approx(7.0), pytest.approx(3 + 2 * math.log(6)))
+
+
+def test_few_rows_of_stated_uncertainty_do_not_favour_the_law_with_fewer_parameters() -> None:
+    """Four rows, chi-square 0.017 with tau and beta, 9.33 with beta alone: 4.0 against 11.3."""
+    both = _law("tau + beta f", {"tau": 1e7, "beta": 0.2}, 0.017, 4, 0)
+    one = _law("Coulomb", {"beta": 0.2}, 9.33, 4, 0)
+    assert (both.aic, one.aic) == (pytest.approx(4.017), pytest.approx(11.33))
 
 
 def test_a_proposed_load_is_as_uncertain_as_its_measurement_bar_and_surface() -> None:

@@ -69,8 +69,8 @@ def test_an_identification_of_a_linear_model(found: Identification) -> None:
     assert found.solves == 5 * found.passes + 5 + 2
 
 
-def laws(aicc: float) -> dict[str, Any]:
-    return {"laws": (Law("Coulomb", {}, 1.0, 4.0, 1.0), Law("tau + beta f", {}, 1.0, aicc, 1.0))}
+def laws(aic: float) -> dict[str, Any]:
+    return {"laws": (Law("Coulomb", {}, 1.0, 4.0, 1.0), Law("tau + beta f", {}, 1.0, aic, 1.0))}
 
 
 def tau(value: float, low: float, high: float, **others: Interval) -> dict[str, Any]:
@@ -120,7 +120,7 @@ SAID: list[tuple[dict[str, Any], str]] = [
     ),
     ({"responses": [{"warnings": ("plasticity index 1.2",)}, {}]}, "plasticity index 1.2"),
     ({"responses": [{"warnings": ("1.5 deg",)}, {"warnings": ("2 deg",)}]}, "2 deg"),
-    (laws(10.2), "the law Coulomb describes the data better (AICc lower by 6.2)"),
+    (laws(10.2), "the law Coulomb describes the data better (AIC lower by 6.2)"),
     (laws(10.0) | tau(10, 8, 12) | {"probability": 0.01, "fit": {"nonlinearity": 0.5}} | EDGE, ""),
 ]
 

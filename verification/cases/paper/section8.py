@@ -93,7 +93,7 @@ def threshold(tier: str) -> Measured:
     printed = float(fig8.plasticity(np.array([CRITICAL_RMS]), RESOLUTION)[0])
     later = float(np.interp(1.0e-6, curves[-1].middle, rates[-1]))
     sentence = (
-        "the rate of mu falls to a tenth of its value at sigma_e = 0 at "
+        "the rate of mu falls to a tenth of its mean over the first step from sigma_e = 0 at "
         + ", ".join(f"{s * 1e6:.2f} um at {c.load:g} N" for s, c in zip(critical, curves, strict=True))
         + f", and goes on falling ({later:.1%} at 1 um, 70 N). psi does not depend on the load; with the "
         f"printed epsilon = 3.15 um it is {printed:.3g} at 0.5 um"
@@ -107,7 +107,7 @@ def threshold(tier: str) -> Measured:
 
 
 def _levelled(curve: fig8.Curve, share: float) -> float:
-    """Return the sigma_e (m) where the rate of mu has fallen to a share of that at sigma_e = 0."""
+    """Return the sigma_e (m) where the rate of mu has fallen to a share of its mean over the first step."""
     log_rate = np.log(np.maximum(curve.rate(curve.friction), 1e-6))
     return float(np.interp(-np.log(share), -log_rate, curve.middle))
 
