@@ -1,4 +1,4 @@
-"""A solver of ten lines and one with a fault, run through the suite. Usage: check_my_solver.py [ID-GLOB] [PICTURE]"""
+"""A right and a wrong solver, run through the suite. Usage: check_my_solver.py [ID-GLOB] [PICTURE]"""
 
 import sys
 
