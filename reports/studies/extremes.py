@@ -39,7 +39,7 @@ CONDITIONING = ("M", "condition", "CG iterations", "digits lost by a direct solv
 SECOND_SOLVE = ("the scaling law", "the same heights without an offset", "the dense solver")
 """Judges that are this code again."""
 FEW = 6
-"""Decimal digits below which a right result is reported apart: those of single precision."""
+"""Decimal digits below which a right result is counted apart: those of single precision."""
 
 
 def sentence(document: Document) -> str:
@@ -47,19 +47,12 @@ def sentence(document: Document) -> str:
     rows, counts = document["states"], document["counts"]
     right = [row for row in rows if row["verdict"] == "right"]
     few = [row for row in right if row["digits"] < FEW]
-    worst: dict[str, float] = {}
-    for row in few:
-        worst[row["oracle"]] = min(row["digits"], worst.get(row["oracle"], FEW))
-    judges = ", ".join(
-        f"{sum(row['oracle'] == name for row in few)} judged by {name}, from {digits:.2g} digits"
-        for name, digits in sorted(worst.items(), key=lambda item: item[1])
-    )
     again = sum(row["oracle"] in SECOND_SOLVE for row in right)
     return (
         f"{len(rows)} extreme inputs: {counts['wrong']} wrong beyond the conditioning of the input, "
         f"{counts['crash']} crashes, {counts['detected failure']} failed and reported it, "
-        f"{len(right) - len(few)} right to {FEW} digits and {len(few)} to fewer"
-        f"{f' ({judges})' if few else ''}; "
+        f"{len(right)} right"
+        f"{f', {len(few)} of them to fewer than {FEW} digits' if few else ''}; "
         f"{again} of the right ones are judged by a second solve of this code"
     )
 
