@@ -1,4 +1,4 @@
-"""A solver of ten lines, run through the suite. Usage: check_my_solver.py [ID-GLOB] [PICTURE]"""
+"""A right and a wrong solver, run through the suite. Usage: check_my_solver.py [ID-GLOB] [PICTURE]"""
 
 import sys
 
@@ -26,15 +26,25 @@ def my_solver(problem: ContactProblem) -> Answer:
     return Answer(f.reshape(problem.gap.shape), True, contact_area=np.count_nonzero(f) * h**2)
 
 
-my_solver.abilities = Abilities(periodic=False, load=False, largest=32)
-ran = [r for r in suite.run(my_solver, [ONLY]) if r.status != "unavailable"]
+def too_stiff(problem: ContactProblem) -> Answer:
+    """The same on a half-space that is 1 % too stiff."""
+    return Answer(1.01 * my_solver(problem).pressure, True)
+
+
+my_solver.abilities = too_stiff.abilities = Abilities(periodic=False, load=False, largest=32)
+ran, wrong = (
+    [r for r in suite.run(solver, [ONLY]) if r.status != "unavailable"] for solver in (my_solver, too_stiff)
+)
 for r in ran:
     print(f"{r.status:5} {r.id:36} {r.note if r.error is None else f'{r.error:.1e} of {r.tolerance:.1e}'}")
 
-shares = [max((r.error or 0) / (r.tolerance or 1), 1e-9) for r in ran]
-figure, axes = plt.subplots(figsize=(5.6, 0.35 * len(ran) + 1.2), layout="constrained")
-axes.barh([r.id.partition("/")[2] for r in ran], shares)
+figure, axes = plt.subplots(figsize=(5.6, 0.45 * len(ran) + 1.6), layout="constrained")
+for label, results, shift in (("right", ran, -0.2), ("1 % too stiff", wrong, 0.2)):
+    shares = [max((r.error or 0) / (r.tolerance or 1), 1e-9) for r in results]
+    axes.barh(np.arange(len(shares)) + shift, shares, height=0.4, label=label)
+axes.set_yticks(range(len(ran)), [r.id.partition("/")[2] for r in ran])
 axes.axvline(1, color="k", ls="--", lw=1)
+figure.legend(loc="outside upper center", ncols=2)
 axes.set(xscale="log", xlabel="error over tolerance; below 1: pass")
-axes.xaxis.set_major_formatter("{x:.0e}")
+axes.set_xticks([1e-8, 1e-4, 1, 1e4], ["1e-8", "1e-4", "1", "1e4"])
 figure.savefig(PICTURE, dpi=100)

@@ -23,10 +23,15 @@ top.contourf(x, x, turned.pressure.T, 5, cmap="Greys", vmax=3 * turned.max_press
 top.set(xlabel="x (mm)", ylabel="y (mm)", aspect="equal", xlim=(-2, 2), ylim=(-2, 2), title="from above")
 side.plot(x, s.surfaces[1][:, GRID // 2] * 1e6, color=ORANGE, label="upper body: heights upwards")
 side.plot(x, s.surfaces[0][:, GRID // 2] * 1e6, color=BLUE, label="lower body: heights upwards")
-side.set(xlabel="x (mm)", ylabel="z (um)", xlim=(-1.8, 1.8), ylim=(-420, 400), title="section, phi = 0")
+arc = np.linspace(0, phi, 20)
+top.plot(0.9 * np.cos(arc), 0.9 * np.sin(arc), "k", lw=1.2)
+top.annotate("phi", (0.95, 0.18))
+side.axvline(ahead, color="0.5", ls="--", lw=1, label="centre of pressure")
+side.set(xlabel="x (mm)", ylabel="z (µm)", xlim=(-1.8, 1.8), ylim=(-420, 400))
+side.set_title("section, phi = 0 (heights stretched)")
 for axes, start, stop, colour, at, text in (
     (top, (0, 0), (1.3, 0.75), ORANGE, (0.6, 0.95), "sliding"),
-    (top, (0, 0), (1.5, 0), "k", (0.8, 0.1), "phi"),
+    (top, (0, 0), (1.5, 0), "k", (1.55, -0.04), "x"),
     (top, (0, 0), (-0.75, 1.3), BLUE, (-1.9, 1.5), "Q > 0, theta_y > 0"),
     (side, (0, 290), (0.9, 290), ORANGE, (0, 310), "upper body slides"),
     (side, (-0.4, 90), (-1, 90), ORANGE, (-1.05, 110), "F on the upper"),

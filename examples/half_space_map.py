@@ -29,8 +29,8 @@ for axes, (title, (upper, place)) in zip(panels, PANELS.items(), strict=True):
     axes.minorticks_off()
     at = [float(np.interp(10, SLOPES, row)) for row in error]
     print(f"{title}, 10 degrees: {at[0]:.1f} % on waves of 8 half-widths, {at[-1]:.1f} on 256")
-panels[1].set_ylabel("wavelength (element half-widths)")
+panels[1].set_ylabel("wavelength (halves of an element)")
 panels[2].set_xlabel("maximum slope (degrees)")
-figure.colorbar(filled, ax=panels, label=f"error in line (%), nu = {NU:g}", format="%g")
+figure.colorbar(filled, ax=panels, label=f"error of the coefficient (%), nu = {NU:g}", format="%g")
 figure.savefig(PICTURE, dpi=100)
 Image.open(PICTURE).convert("RGB").quantize(64).save(PICTURE, optimize=True)

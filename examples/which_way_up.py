@@ -34,7 +34,10 @@ for axes, (name, scene) in zip(panels[1:], scenes.items(), strict=True):
     px, py = ((c[k] - c.mean()) * 1e3 for c, k in zip((found.grid.x, found.grid.y), touching, strict=True))
     print(f"on the {name} body it touches first at x = {px:+.2f}, y = {py:+.2f} mm")
     axes.plot(px, py, "r*", label="touches first")
-    axes.quiver([0.2, 0.2], [-0.05, -0.05], [1, 0], [0, 1], color=["r", "tab:cyan"], scale=8)
+    colour = "w" if name == "lower" else "k"
+    axes.quiver([0.12, 0.12], [-0.05, -0.05], [1, 0], [0, 1], color=colour, scale=8)
+    axes.annotate("phi = 0", (0.25, -0.07), color=colour)
+    axes.annotate("Q > 0", (0.14, 0.05), color=colour)
 panels[1].legend(loc="lower right", fontsize=9)
-figure.colorbar(image, ax=panels, label="z, upwards (um)")
+figure.colorbar(image, ax=panels, label="z above its lowest point (µm)")
 figure.savefig(PICTURE, dpi=100)
