@@ -14,8 +14,8 @@ FOLDER = ROOT / "docs" / "notebooks"
 STATED = {
     "area_and_load": """
         11 of 11 converged
-        A/A0 at 0.02: 0.0452, Greenwood and Williamson 0.0412, Persson 0.0319
-        kappa 2.19 to 2.31, Nayak's parameter 1.8 to 11.6
+        A/A0 at 0.02: 0.0463, Greenwood and Williamson 0.0412, Persson 0.0319
+        kappa 2.21 to 2.36, Nayak's parameter 1.8 to 11.6
     """,
     "power_to_amontons": """
         24 of 24 converged
