@@ -242,11 +242,12 @@ def test_an_input_that_may_not_be_read_is_named(
     real = io.open
 
     def opens(path: object, *args: object, **options: object) -> object:
-        if isinstance(path, Path) and path.name == unreadable:
+        if isinstance(path, str | Path) and Path(path).name == unreadable:
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
         return real(path, *args, **options)  # type: ignore[call-overload]  # passed on as they are
 
-    monkeypatch.setattr(io, "open", opens)
+    monkeypatch.setattr(io, "open", opens)  # of `Path.open`
+    monkeypatch.setattr("builtins.open", opens)  # of numpy
     done = run(command)
     assert (done.status, done.err.count("\n")) == (2, 1)
     assert all(words in done.err for words in (unreadable, "a file that can be read", "Permission denied"))
