@@ -99,7 +99,8 @@ def _goes_on(first: Array, second: Array) -> bool:
     if not np.isfinite(first).all() or not np.isfinite(np.diff(second)).any():
         return True
     rise, other = (float(np.nanmedian(np.diff(line))) for line in (first, second))
-    return bool(np.isclose(rise, other, 1e-6, 0)) or (_is_even(second) and 0.5 <= other / rise <= 2)
+    alike = rise**2 <= 2 * rise * other <= 4 * rise**2  # half to twice the rise
+    return bool(np.isclose(rise, other, 1e-6, 0)) or (_is_even(second) and alike)
 
 
 def _is_axis(first: Array, second: Array) -> bool:

@@ -126,6 +126,11 @@ def test_a_line_of_the_table_that_is_no_row_is_refused(
         read_table(tmp_path / name)
 
 
+def test_a_first_row_of_one_height_is_no_axis(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("0\t0\t0\t0\n7\t0\t-1\tnan\n2\t5\t1\t3\n")
+    assert read_table(tmp_path / "a.txt").rows.shape == (3, 4)
+
+
 @drawn(st.data())
 @settings(deadline=None, max_examples=200)
 def test_random_tables_give_their_numbers_or_a_refusal(data: st.DataObject) -> None:
