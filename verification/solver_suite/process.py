@@ -113,25 +113,31 @@ def serve(folder: str) -> None:
     numbers: queue.SimpleQueue[int] = queue.SimpleQueue()
     asked = os.fdopen(os.dup(0), encoding="ascii")
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-    given = (asked, numbers, folder, os.environ[SOLVER_OF])  # a solver may clear its environment
+    ending = threading.Lock()  # who holds it alone writes to the folder, or removes it
+    given = (asked, numbers, folder, os.environ[SOLVER_OF], ending)  # a solver may clear its environment
     threading.Thread(target=_listen, args=given, daemon=True).start()
-    _answer(Path(folder), numbers)
+    _answer(Path(folder), numbers, ending)
+    ending.acquire()  # kept: the other thread is not cut off half-way
+    shutil.rmtree(folder, ignore_errors=True)
 
 
-def _listen(asked: Iterable[str], numbers: queue.SimpleQueue[int], folder: str, mark: str) -> None:
+def _listen(
+    asked: Iterable[str], numbers: queue.SimpleQueue[int], folder: str, mark: str, ending: threading.Lock
+) -> None:
     with suppress(OSError):
         for line in asked:
             numbers.put(int(line))
     numbers.put(0)
     time.sleep(2 * PATIENCE)
-    for each in _marked(mark) - {psutil.Process()}:
-        with suppress(psutil.Error):
-            each.kill()
-    shutil.rmtree(folder, ignore_errors=True)
-    kill_group(os.getpid())
+    with ending:
+        for each in _marked(mark) - {psutil.Process()}:
+            with suppress(psutil.Error):
+                each.kill()
+        shutil.rmtree(folder, ignore_errors=True)
+        kill_group(os.getpid())
 
 
-def _answer(folder: Path, numbers: queue.SimpleQueue[int]) -> None:
+def _answer(folder: Path, numbers: queue.SimpleQueue[int], ending: threading.Lock) -> None:
     served_by = os.getpid()
     try:
         solver = pickle.loads((folder / "source").read_bytes())()  # from the judge, who is trusted here
@@ -140,13 +146,15 @@ def _answer(folder: Path, numbers: queue.SimpleQueue[int]) -> None:
     except InputError as refused:
         value = readable(refused.value if isinstance(refused.value, str) else repr(refused.value))
         _write(folder / "0", {"field": refused.field, "value": value, "allowed": refused.allowed})
+        numbers.get()  # until the judge has read it
         return
     while number := numbers.get():
         problem = pickle.loads((folder / f"{number}.problem").read_bytes())
         header, pressure = _posed(solver, problem)
         if os.getpid() != served_by:  # the solver forked, and let its child return: one answer is enough
             os._exit(1)
-        _write(folder / str(number), header, pressure)
+        with ending:
+            _write(folder / str(number), header, pressure)
 
 
 def _write(path: Path, header: Mapping[str, Any], body: bytes = b"") -> None:
