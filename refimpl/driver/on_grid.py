@@ -77,7 +77,8 @@ def _solve_problem(
     state = solve_fft(problem, tolerance, counter, guess)
     if state.status in (Status.CONVERGED, Status.CYCLED):
         return state
-    return at_hardness(problem, counter) or state
+    full = at_hardness(problem, counter)
+    return state if full is None else replace(full, iterations=state.iterations)
 
 
 def _without_contact(problem: Problem) -> State:

@@ -1,4 +1,4 @@
-"""The state with every element at the hardness, for a load that is exactly what it carries."""
+"""The state with every element at the hardness, for a load that no iteration balanced."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ _ROUNDING = 1e-12  # relative, of the load of that state
 
 
 def at_hardness(problem: Problem, counter: Counter) -> State | None:
-    """Return the state with every element at the hardness, at the least approach, if it carries the load.
+    """Return the state with every element at the hardness, at the least approach, or None if it carries more.
 
-    No element is free there, so the iteration has nothing to balance the load with. The state is one of
-    many: slopes, and so the load, change with the approach.
+    Where it carries the load no element is free, so an iteration has nothing to balance the load with. Where
+    it carries less its certificate says so, and its normal force is what to ask for. It is one of many such
+    states: slopes, and so the load, change with the approach; on a steep ridge others carried 1.2 times more.
     """
     most = problem.cap * problem.grid.nominal_area
     if problem.load is None or problem.load <= _LEAST_SHARE * most:
@@ -37,4 +38,4 @@ def at_hardness(problem: Problem, counter: Counter) -> State | None:
 
     depth, slopes = settled_indentation(problem, lower, upper, indentation, Slopes.flat(f.shape))
     state = certify(problem, operator, f, r, slopes, depth)
-    return state if abs(problem.load / state.forces.normal - 1) <= _ROUNDING else None
+    return state if state.forces.normal <= problem.load * (1 + _ROUNDING) else None
