@@ -199,7 +199,7 @@ class Problem:
     def largest_load(self, slopes: Slopes) -> float:
         """Return what pressures up to the hardness carry at most on given slopes (N); infinite without a cap.
 
-        Elements whose shear drags down more than their pressure carries are left out.
+        Elements whose shear drags down more than their pressure carries count as without pressure.
         """
         if math.isinf(self.cap):
             return math.inf
