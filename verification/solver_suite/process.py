@@ -124,7 +124,7 @@ def serve(folder: str) -> None:
 def _listen(
     asked: Iterable[str], numbers: queue.SimpleQueue[int], folder: str, mark: str, ending: threading.Lock
 ) -> None:
-    with suppress(OSError):
+    with suppress(OSError, ValueError):  # a solver may have closed the pipe, and opened a file in its place
         for line in asked:
             numbers.put(int(line))
     numbers.put(0)
