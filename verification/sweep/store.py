@@ -1,7 +1,8 @@
 """Results kept in one SQLite file: a row per finished run, written at once or not at all.
 
 The journal is a write-ahead log, so that a run is either in the table or not after a kill at any moment, and
-others may read while a sweep writes. Of two sweeps that finish the same run the first one's row is kept.
+others may read while a sweep writes. Two sweeps may share a store on one machine, not across a network file
+system, where SQLite cannot keep such a log. Of a run that both have begun the first one's row is kept.
 
 Damage is found before it is used: on opening, the file's structure, its schema and the checksum of every row
 are compared with what this module writes. A refusal deletes nothing: a new store may stay, without runs.
