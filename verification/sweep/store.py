@@ -33,7 +33,7 @@ _TABLE = f"""runs (
     {", ".join((*COORDINATES, *OUTCOMES))},
     inputs text not null, seconds real not null, checksum text not null
 ) without rowid"""
-_INSERT = f"insert or ignore into runs values ({', '.join('?' * len(_ALL))})"
+_INSERT = f"insert into runs values ({', '.join('?' * len(_ALL))}) on conflict (key) do nothing"
 _SELECT = f"select {', '.join(_ALL)} from runs"
 
 
@@ -107,6 +107,8 @@ def open_store(path: Path) -> Iterator[Store]:
         store = Store(connection, path)
         try:
             yield store
+        except sqlite3.IntegrityError:  # a row of ours is wrong, not the file
+            raise
         except sqlite3.Error as refused:
             raise _unusable(path, refused) from refused
         store.check_place()
