@@ -20,6 +20,7 @@ import traceback
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -39,8 +40,8 @@ ROUNDS = 20
 """Most times that processes left behind are looked for."""
 LONGEST_HEADER = 1 << 16
 """Bytes of a reply's first line."""
-POLL = 5e-4
-"""Seconds between two looks for a reply."""
+PAUSES = 5e-4, 0.02
+"""Seconds between two looks for a reply, at first and at last."""
 SOLVER_OF = "ROUGH_FRICTION_SOLVER_OF"
 """Environment variable of a solver's process and of all that it starts: its value is the run's mark."""
 _SERVE = """import sys
@@ -77,13 +78,10 @@ def reply(
     child: subprocess.Popen[bytes], path: Path, seconds: float, length: int = 0
 ) -> tuple[dict[str, Any], bytes]:
     """Read a reply and the ``length`` bytes of an answer. Raises `Reported` for what came instead."""
-    deadline = time.monotonic() + seconds
-    while not path.exists():
-        if child.poll() is not None and not path.exists():
-            raise Reported(f"the solver's process died ({exit_text(child.returncode)})")
-        if time.monotonic() > deadline:
-            raise Reported(f"no answer within {seconds:g} s")
-        time.sleep(POLL)
+    if not wait_until(lambda: path.exists() or child.poll() is not None, seconds):
+        raise Reported(f"no answer within {seconds:g} s")
+    if child.poll() is not None and not path.exists():
+        raise Reported(f"the solver's process died ({exit_text(child.returncode)})")
     with suppress(OSError, ValueError, RecursionError):
         if path.is_file():  # a pipe would be read for ever
             with path.open("rb") as file:
@@ -91,6 +89,15 @@ def reply(
             if isinstance(header, dict) and len(body) == length * (header.get("kind") == "answer"):
                 return header, body
     raise Reported("the solver's process sent something else than an answer")
+
+
+def wait_until(holds: Callable[[], bool], seconds: float) -> bool:
+    """Return whether a condition holds by then; it is looked at in growing pauses."""
+    deadline, (pause, longest) = time.monotonic() + seconds, PAUSES
+    while not (held := holds()) and time.monotonic() < deadline:
+        time.sleep(pause)
+        pause = min(1.05 * pause, longest)
+    return held
 
 
 def exit_text(status: int | None) -> str:
@@ -196,11 +203,8 @@ def _marked(mark: str) -> set[psutil.Process]:
     return found
 
 
-def _gone(processes: Iterable[psutil.Process], seconds: float) -> None:
-    """Wait until none of the processes is alive, for so many seconds at most."""
-    deadline = time.monotonic() + seconds
-    while any(map(_alive, processes)) and time.monotonic() < deadline:
-        time.sleep(0.01)
+def _gone(processes: Iterable[psutil.Process]) -> bool:
+    return not any(map(_alive, processes))
 
 
 def end_all(leader: subprocess.Popen[bytes], mark: str) -> list[str]:
@@ -229,5 +233,5 @@ def end_all(leader: subprocess.Popen[bytes], mark: str) -> list[str]:
                 if not in_session(each.pid, leader.pid):
                     found.setdefault(each.pid, f"{' '.join(each.cmdline())[:80]} (process {each.pid}): ended")
                 each.kill()
-        _gone(left, PATIENCE)
+        wait_until(partial(_gone, left), PATIENCE)
     return [found[pid] for pid in sorted(found)]
