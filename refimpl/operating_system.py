@@ -195,6 +195,21 @@ def kill_group(leader: int) -> None:
                 each.kill()
 
 
+def has_ended(child: int) -> bool:
+    """Return whether a child has ended. It is not reaped, so that its number stays its own.
+
+    Python has no such call on Windows, where an open handle keeps the number, and in old ones on macOS.
+    """
+    if hasattr(os, "waitid"):
+        with suppress(ChildProcessError):  # reaped before
+            return os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None
+        return True
+    try:
+        return bool(psutil.Process(child).status() == psutil.STATUS_ZOMBIE)
+    except psutil.Error:
+        return True
+
+
 def words_of(command: str, *, windows: bool = os.name == "nt") -> list[str]:
     r"""Return the words of a command line, split like a shell does. Raises ValueError for an open quote.
 

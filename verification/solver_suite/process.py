@@ -28,7 +28,7 @@ import numpy as np
 import psutil
 
 from refimpl.errors import InputError
-from refimpl.operating_system import in_session, kill_group
+from refimpl.operating_system import has_ended, in_session, kill_group
 from verification.framework.case import Reported, Unavailable, readable
 from verification.solver_suite.protocol import NUMBERS, SolverUnderTest, abilities_of, ask
 
@@ -78,10 +78,10 @@ def reply(
     child: subprocess.Popen[bytes], path: Path, seconds: float, length: int = 0
 ) -> tuple[dict[str, Any], bytes]:
     """Read a reply and the ``length`` bytes of an answer. Raises `Reported` for what came instead."""
-    if not wait_until(lambda: path.exists() or child.poll() is not None, seconds):
+    if not wait_until(lambda: path.exists() or has_ended(child.pid), seconds):
         raise Reported(f"no answer within {seconds:g} s")
-    if child.poll() is not None and not path.exists():
-        raise Reported(f"the solver's process died ({exit_text(child.returncode)})")
+    if has_ended(child.pid) and not path.exists():
+        raise Reported(f"the solver's process died ({exit_text(reap(child))})")
     with suppress(OSError, ValueError, RecursionError):
         if path.is_file():  # a pipe would be read for ever
             with path.open("rb") as file:
@@ -207,21 +207,28 @@ def _gone(processes: Iterable[psutil.Process]) -> bool:
     return not any(map(_alive, processes))
 
 
+def reap(leader: subprocess.Popen[bytes]) -> int:
+    """Kill the group of a process, and return its exit status: then its number may be anybody's."""
+    if leader.returncode is None:
+        kill_group(leader.pid)
+        leader.kill()
+    return leader.wait()
+
+
 def end_all(leader: subprocess.Popen[bytes], mark: str) -> list[str]:
     """End a solver's process and all that it started; return what was in other sessions than its own.
 
     These are the processes below it, those that carry the mark in their environment, and what they start.
     """
     below: set[psutil.Process] = set()
-    with suppress(psutil.Error):
-        below = {*psutil.Process(leader.pid).children(recursive=True)}
-    with suppress(OSError, subprocess.TimeoutExpired):
-        assert leader.stdin is not None
-        leader.stdin.close()
-        leader.wait(PATIENCE)
-    kill_group(leader.pid)
-    leader.kill()
-    leader.wait()
+    if leader.returncode is None:
+        with suppress(psutil.Error):
+            below = {*psutil.Process(leader.pid).children(recursive=True)}
+        with suppress(OSError):
+            assert leader.stdin is not None
+            leader.stdin.close()
+        wait_until(lambda: has_ended(leader.pid), PATIENCE)
+        reap(leader)
     found: dict[int, str] = {}
     for _ in range(ROUNDS):
         left = {each for each in below | _marked(mark) if _alive(each)}

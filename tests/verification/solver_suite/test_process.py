@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import os
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -16,7 +18,7 @@ from tests.verification.cli.children import forked, started
 from verification.cli import main
 from verification.cli.suite_run import unwinding
 from verification.framework.case import Result
-from verification.solver_suite import identity, isolated
+from verification.solver_suite import identity, isolated, process
 from verification.solver_suite.isolated import Named
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="signals and forks of POSIX")
@@ -313,3 +315,13 @@ def test_an_ignored_signal_stays_so() -> None:
         return 3
 
     assert forked(act).status == 3
+
+
+def test_a_number_is_signalled_only_while_it_is_the_solvers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Once it is reaped, the system may give its number to anybody."""
+    signalled = list[bool]()
+    monkeypatch.setattr(process, "kill_group", lambda pid: signalled.append(psutil.pid_exists(pid)))
+    child = subprocess.Popen([sys.executable, "-c", ""], stdin=subprocess.PIPE, start_new_session=True)
+    assert process.end_all(child, "nobody's mark") == []
+    assert process.end_all(child, "nobody's mark") == []
+    assert signalled == [True]
