@@ -28,7 +28,7 @@ import numpy as np
 import psutil
 
 from refimpl.errors import InputError
-from refimpl.operating_system import has_ended, in_session, kill_group
+from refimpl.operating_system import has_ended, in_session, kill_group, open_regular
 from verification.framework.case import Reported, Unavailable, readable
 from verification.solver_suite.protocol import NUMBERS, SolverUnderTest, abilities_of, ask
 
@@ -78,16 +78,15 @@ def reply(
     child: subprocess.Popen[bytes], path: Path, seconds: float, length: int = 0
 ) -> tuple[dict[str, Any], bytes]:
     """Read a reply and the ``length`` bytes of an answer. Raises `Reported` for what came instead."""
-    if not wait_until(lambda: path.exists() or has_ended(child.pid), seconds):
+    if not wait_until(lambda: os.path.exists(path) or has_ended(child.pid), seconds):
         raise Reported(f"no answer within {seconds:g} s")
-    if has_ended(child.pid) and not path.exists():
+    if has_ended(child.pid) and not os.path.exists(path):
         raise Reported(f"the solver's process died ({exit_text(reap(child))})")
     with suppress(OSError, ValueError, RecursionError):
-        if path.is_file():  # a pipe would be read for ever
-            with path.open("rb") as file:
-                header, body = json.loads(file.readline(LONGEST_HEADER)), file.read(length + 1)
-            if isinstance(header, dict) and len(body) == length * (header.get("kind") == "answer"):
-                return header, body
+        with open_regular(path) as file:
+            header, body = json.loads(file.readline(LONGEST_HEADER)), file.read(length + 1)
+        if isinstance(header, dict) and len(body) == length * (header.get("kind") == "answer"):
+            return header, body
     raise Reported("the solver's process sent something else than an answer")
 
 
