@@ -77,7 +77,10 @@ def pose(child: subprocess.Popen[bytes], folder: Path, number: int, problem: obj
 def reply(
     child: subprocess.Popen[bytes], path: Path, seconds: float, length: int = 0
 ) -> tuple[dict[str, Any], bytes]:
-    """Read a reply and the ``length`` bytes of an answer. Raises `Reported` for what came instead."""
+    """Read a reply with the ``length`` bytes of an answer, and remove its files.
+
+    Raises `Reported` for what came instead.
+    """
     if not wait_until(lambda: os.path.exists(path) or has_ended(child.pid), seconds):
         raise Reported(f"no answer within {seconds:g} s")
     if has_ended(child.pid) and not os.path.exists(path):
@@ -85,6 +88,9 @@ def reply(
     with suppress(OSError, ValueError, RecursionError):
         with open_regular(path) as file:
             header, body = json.loads(file.readline(LONGEST_HEADER)), file.read(length + 1)
+        for read in (path, path.with_suffix(".problem")):
+            with suppress(OSError):
+                read.unlink()
         if isinstance(header, dict) and len(body) == length * (header.get("kind") == "answer"):
             return header, body
     raise Reported("the solver's process sent something else than an answer")

@@ -7,19 +7,23 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import psutil
 import pytest
 
+from refimpl.errors import InputError
 from tests.verification.cli.children import forked, started
 from verification.cli import main
 from verification.cli.suite_run import unwinding
-from verification.framework.case import Result
+from verification.framework.case import Reported, Result
 from verification.solver_suite import identity, isolated, process
 from verification.solver_suite.isolated import Named
+from verification.solver_suite.protocol import ContactProblem
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="signals and forks of POSIX")
 SLEEPER = "sh -c 'echo $$ > pid; exec sleep 600' "
@@ -97,6 +101,16 @@ def pipes(problem):
 @on_one_element
 def removes(problem):
     shutil.rmtree(folder())
+
+@on_one_element
+def forges(problem):
+    (folder() / "1.part").write_bytes(b'{"kind": "answer"}\n' + np.full(problem.shape, np.nan).tobytes())
+    os.replace(folder() / "1.part", folder() / "1")
+    time.sleep(600)
+
+def vanishes(problem):
+    os.remove(__file__)
+    os._exit(3)
 
 def twice(problem):
     return 2 * np.asarray(own.solve(problem).pressure)
@@ -192,6 +206,28 @@ def test_a_solver_without_an_answer_is_an_error_of_its_case_and_the_rest_still_r
     first, second = judged(name, timeout=0.5)
     assert (first.status, second.status) == ("error", "pass")
     assert first.note.startswith(note)
+
+
+PROBLEM = ContactProblem(np.zeros((2, 2)), spacing=1e-6, reduced_modulus=1e9, load=4e-6)
+
+
+@pytest.fixture
+def temporary(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The directory of the solvers' folders."""
+    (folder / "tmp").mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(folder / "tmp"))
+    return folder / "tmp"
+
+
+def test_the_folder_of_a_solver_does_not_grow(temporary: Path) -> None:
+    remote = isolated.Remote(Named("hostile:twice").solver, 60.0, "twice")
+    for _ in range(2):
+        assert remote(PROBLEM).pressure.shape == (2, 2)
+    (own_folder,) = temporary.iterdir()
+    assert [file.name for file in own_folder.iterdir()] == ["source"]
+    remote.close()
+    remote.close()
+    assert not list(temporary.iterdir())
 
 
 @pytest.mark.parametrize(("name", "status"), [("twice", "fail"), ("patches", "fail"), ("forks", "pass")])
