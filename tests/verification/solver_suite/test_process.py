@@ -222,11 +222,31 @@ def temporary(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_the_folder_of_a_solver_does_not_grow(temporary: Path) -> None:
     remote = isolated.Remote(Named("hostile:twice").solver, 60.0, "twice")
     for _ in range(2):
-        assert remote(PROBLEM).pressure.shape == (2, 2)
+        assert np.shape(remote(PROBLEM).pressure) == (2, 2)
     (own_folder,) = temporary.iterdir()
     assert [file.name for file in own_folder.iterdir()] == ["source"]
     remote.close()
     remote.close()
+    assert not list(temporary.iterdir())
+
+
+def test_a_solver_that_cannot_be_started_again_says_so_each_time(temporary: Path) -> None:
+    remote = isolated.Remote(Named("hostile:vanishes").solver, 60.0, "vanishes")
+    with pytest.raises(Reported, match="exit status 3"):
+        remote(PROBLEM)
+    for _ in range(2):
+        with pytest.raises(InputError, match="No module named 'hostile'"):
+            remote(PROBLEM)
+    remote.close()
+    assert not list(temporary.iterdir())
+
+
+def test_a_process_that_cannot_be_started_leaves_no_folder(
+    temporary: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "executable", "no-such-python")
+    with pytest.raises(FileNotFoundError, match="no-such-python"):
+        isolated.Remote(Named("hostile:twice").solver, 60.0, "twice")
     assert not list(temporary.iterdir())
 
 
