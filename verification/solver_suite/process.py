@@ -77,10 +77,7 @@ def pose(child: subprocess.Popen[bytes], folder: Path, number: int, problem: obj
 def reply(
     child: subprocess.Popen[bytes], path: Path, seconds: float, length: int = 0
 ) -> tuple[dict[str, Any], bytes]:
-    """Read a reply with the ``length`` bytes of an answer, and remove its files.
-
-    Raises `Reported` for what came instead.
-    """
+    """Read a reply with the ``length`` bytes of an answer, once. Raises `Reported` for what came instead."""
     if not wait_until(lambda: os.path.exists(path) or has_ended(child.pid), seconds):
         raise Reported(f"no answer within {seconds:g} s")
     if has_ended(child.pid) and not os.path.exists(path):
@@ -128,15 +125,19 @@ def serve(folder: str) -> None:
     ending = threading.Lock()  # who holds it alone writes to the folder, or removes it
     given = (asked, numbers, folder, os.environ[SOLVER_OF], ending)  # a solver may clear its environment
     threading.Thread(target=_listen, args=given, daemon=True).start()
-    _answer(Path(folder), numbers, ending)
-    ending.acquire()  # kept: the other thread is not cut off half-way
-    shutil.rmtree(folder, ignore_errors=True)
+    served_by = os.getpid()
+    try:
+        _answer(Path(folder), numbers, ending)
+    finally:
+        if os.getpid() == served_by:  # no child that the solver forked
+            ending.acquire()  # kept: the other thread is not cut off half-way
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def _listen(
     asked: Iterable[str], numbers: queue.SimpleQueue[int], folder: str, mark: str, ending: threading.Lock
 ) -> None:
-    with suppress(OSError, ValueError):  # a solver may have closed the pipe, and opened a file in its place
+    with suppress(OSError, ValueError):  # a solver may have opened a file in the pipe's place
         for line in asked:
             numbers.put(int(line))
     numbers.put(0)

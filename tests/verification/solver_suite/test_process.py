@@ -250,6 +250,13 @@ def test_a_process_that_cannot_be_started_leaves_no_folder(
     assert not list(temporary.iterdir())
 
 
+def test_a_process_that_fails_on_its_own_removes_its_folder(tmp_path: Path) -> None:
+    (tmp_path / "own").mkdir()
+    child = process.start(len, tmp_path / "own", "nobody's mark")  # type: ignore[arg-type]  # takes no solver
+    assert child.wait(60) == 1
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize(("name", "status"), [("twice", "fail"), ("patches", "fail"), ("forks", "pass")])
 def test_a_solver_that_patches_the_judge_or_forks_is_judged_once_a_case(
     folder: Path, name: str, status: str
