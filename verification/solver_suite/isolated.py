@@ -1,7 +1,9 @@
-"""The suite with a solver in a process of its own: the judge, here, is out of the solver's reach.
+"""The suite with a solver in a process of its own: the judge's objects, here, are not the solver's to change.
 
-A solver may crash, hang, fork, or write into every descriptor that it finds: its case gets an `error`, and a
-new process starts. What it started is ended with it, whatever session that is in (`process.end_all`).
+It runs as the same user and may forge a reply, so no number of one is believed but what the judge recomputes.
+Who a solver is, and what it declines, is its own word. It may crash, hang, fork, or write into every
+descriptor that it finds: its case gets an `error`, and a new process starts. What it started is ended with
+it, whatever session that is in (`process.end_all`).
 """
 
 from __future__ import annotations

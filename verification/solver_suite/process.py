@@ -1,7 +1,7 @@
 """Processes of solvers under test: questions and replies, their own side, and what they leave.
 
 A reply is a file: a line with a JSON object, then raw bytes. It appears in one step, and no more of it is
-read than an answer has: no pickles come back. A solver can write whatever it likes wherever its process can.
+read than an answer has: no pickles come back. A solver may forge it: see `isolated`.
 """
 
 from __future__ import annotations

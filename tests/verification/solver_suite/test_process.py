@@ -1,4 +1,4 @@
-"""Processes of solvers: the judge is out of their reach, and nothing that a run started goes on after it."""
+"""Processes of solvers: none can change its judge, and nothing that a run started goes on after it."""
 
 from __future__ import annotations
 
@@ -255,6 +255,12 @@ def test_a_process_that_fails_on_its_own_removes_its_folder(tmp_path: Path) -> N
     child = process.start(len, tmp_path / "own", "nobody's mark")  # type: ignore[arg-type]  # takes no solver
     assert child.wait(60) == 1
     assert not list(tmp_path.iterdir())
+
+
+def test_a_forged_reply_is_judged_like_any_other(folder: Path) -> None:
+    (result,) = isolated.run(Named("hostile:forges").solver, CASES[:1], timeout=60.0)
+    assert (result.status, result.error) == ("error", None)
+    assert "pressures are not finite" in result.note
 
 
 @pytest.mark.parametrize(("name", "status"), [("twice", "fail"), ("patches", "fail"), ("forks", "pass")])
