@@ -6,16 +6,19 @@ Python that lacks them.
 
 from __future__ import annotations
 
+import errno
 import math
 import os
 import platform
 import re
 import shlex
 import signal
+import stat
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import BinaryIO
 
 import psutil
 
@@ -186,6 +189,31 @@ def kill_group(leader: int) -> None:
         for each in (*head.children(recursive=True), head):
             with suppress(psutil.Error):
                 each.kill()
+
+
+def has_ended(child: int) -> bool:
+    """Return whether a child has ended. It is not reaped, so that its number stays its own.
+
+    Python has no such call on Windows, where an open handle keeps the number, and in old ones on macOS.
+    """
+    if hasattr(os, "waitid"):
+        with suppress(ChildProcessError):  # reaped before
+            return os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None
+        return True
+    try:
+        return bool(psutil.Process(child).status() == psutil.STATUS_ZOMBIE)
+    except psutil.Error:
+        return True
+
+
+@contextmanager
+def open_regular(path: Path) -> Iterator[BinaryIO]:
+    """Open a regular file to be read; raises OSError at once for another: a pipe is not waited for."""
+    at_once = getattr(os, "O_NONBLOCK", 0)  # absent on Windows, whose pipes have no names in folders
+    with open(path, "rb", opener=lambda name, flags: os.open(name, flags | at_once)) as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise OSError(errno.EINVAL, "no regular file", str(path))
+        yield file
 
 
 def words_of(command: str, *, windows: bool = os.name == "nt") -> list[str]:

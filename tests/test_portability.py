@@ -31,7 +31,7 @@ for name in ("fcntl", "resource", "pwd", "grp", "termios"):
     sys.modules[name] = None
 for name in ("fork", "getuid", "geteuid", "nice", "setsid", "killpg", "getpgid", "sched_getaffinity"):
     delattr(os, name)
-del os.O_NONBLOCK
+del os.O_NONBLOCK, os.waitid
 for name in ("SIGHUP", "SIGPROF", "SIGXCPU", "setitimer", "pthread_kill", "pthread_sigmask"):
     delattr(signal, name)
 

@@ -35,10 +35,10 @@ import numpy as np
 
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
-from refimpl.operating_system import kill_group, words_of
+from refimpl.operating_system import has_ended, words_of
 from verification.output.result_files import parsed
 from verification.solver_suite.identity import Identity, of_command
-from verification.solver_suite.process import exit_text
+from verification.solver_suite.process import exit_text, reap, wait_until
 from verification.solver_suite.protocol import NUMBERS, Abilities, Answer, BadAnswer, ContactProblem, Coupling
 
 LONGEST = 86400.0
@@ -115,12 +115,10 @@ class Command:
             except OSError as missing:
                 raise BadAnswer(f"cannot run {self.words[0]}: {missing.strerror}") from missing
             try:
-                status = process.wait(self.timeout)
-            except subprocess.TimeoutExpired as late:
-                raise BadAnswer(f"no answer within {self.timeout:g} s") from late
+                if not wait_until(lambda: has_ended(process.pid), self.timeout):
+                    raise BadAnswer(f"no answer within {self.timeout:g} s")
             finally:
-                kill_group(process.pid)
-                process.wait()
+                status = reap(process)
             if status:
                 raise BadAnswer(f"{exit_text(status)}: {_last_line(output)}")
 

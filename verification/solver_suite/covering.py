@@ -29,13 +29,13 @@ def stored(name: str, design: Design) -> list[dict[str, object]]:
     ]
 
 
-def covering(sizes: Sequence[int], seed: int, *, strength: int = 2, tries: int = 30) -> list[list[int]]:
+def covering(sizes: Sequence[int], seed: int, *, strength: int, tries: int) -> list[list[int]]:
     """Return the rows of a covering array of dimensions with so many levels, by a greedy search among
     completions.
 
     Of ``tries`` random completions of a row the best is taken.
 
-    >>> rows = covering((2, 2, 2), seed=0)
+    >>> rows = covering((2, 2, 2), seed=0, strength=2, tries=1)
     >>> len({(row[0], row[2]) for row in rows})
     4
     """

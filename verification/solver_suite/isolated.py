@@ -1,7 +1,9 @@
-"""The suite with a solver in a process of its own: the judge, here, is out of the solver's reach.
+"""The suite with a solver in a process of its own: the judge's objects, here, are not the solver's to change.
 
-A solver may crash, hang, fork, or write into every descriptor that it finds: its case gets an `error`, and a
-new process starts. What it started is ended with it, whatever session that is in (`process.end_all`).
+It runs as the same user and may forge a reply, so no number of one is believed but what the judge recomputes.
+Who a solver is, and what it declines, is its own word. It may crash, hang, fork, or write into every
+descriptor that it finds: its case gets an `error`, and a new process starts. What it started is ended with
+it, whatever session that is in (`process.end_all`).
 """
 
 from __future__ import annotations
@@ -10,6 +12,7 @@ import importlib
 import os
 import secrets
 import shutil
+import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterable, Mapping
@@ -96,7 +99,7 @@ class Remote:
     def __init__(self, source: Source, timeout: float, name: str) -> None:
         require_timeout(timeout)
         self._source, self._limit, self._name = source, timeout + GRACE, name
-        self._mark, self._lost = secrets.token_hex(8), False
+        self._mark, self._lost = secrets.token_hex(8), True
         self.left: list[str] = []
         self.identity: Identity = {}
         self.abilities = self._open()
@@ -120,18 +123,19 @@ class Remote:
         return Answer(np.frombuffer(body, "<f8").reshape(problem.shape), True, **beside)
 
     def close(self) -> None:
-        """End the process and what it started."""
-        self.left += process.end_all(self._process, self._mark)
-        shutil.rmtree(self._folder, ignore_errors=True)
+        """End the process and what it started, once."""
+        self._ending.close()
 
     def _open(self) -> Abilities:
-        self._folder, self._number, self._lost = Path(tempfile.mkdtemp(prefix="solver-")), 0, False
-        self._process = process.start(self._source, self._folder, self._mark)
-        try:
-            return self._greeting()
-        except BaseException:
-            self.close()
-            raise
+        self._folder, self._number = Path(tempfile.mkdtemp(prefix="solver-")), 0
+        with ExitStack() as opened:
+            opened.callback(shutil.rmtree, self._folder, ignore_errors=True)
+            self._process: subprocess.Popen[bytes] = process.start(self._source, self._folder, self._mark)
+            opened.callback(lambda: self.left.extend(process.end_all(self._process, self._mark)))
+            abilities = self._greeting()
+            self._ending = opened.pop_all()
+        self._lost = False
+        return abilities
 
     def _greeting(self) -> Abilities:
         """Return the abilities of the solver. Raises `InputError` for one that is refused, or whose process

@@ -1,7 +1,7 @@
 """Processes of solvers under test: questions and replies, their own side, and what they leave.
 
 A reply is a file: a line with a JSON object, then raw bytes. It appears in one step, and no more of it is
-read than an answer has: no pickles come back. A solver can write whatever it likes wherever its process can.
+read than an answer has: no pickles come back. A solver may forge it: see `isolated`.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ import traceback
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +28,7 @@ import numpy as np
 import psutil
 
 from refimpl.errors import InputError
-from refimpl.operating_system import in_session, kill_group
+from refimpl.operating_system import has_ended, in_session, kill_group, open_regular
 from verification.framework.case import Reported, Unavailable, readable
 from verification.solver_suite.protocol import NUMBERS, SolverUnderTest, abilities_of, ask
 
@@ -39,8 +40,8 @@ ROUNDS = 20
 """Most times that processes left behind are looked for."""
 LONGEST_HEADER = 1 << 16
 """Bytes of a reply's first line."""
-POLL = 5e-4
-"""Seconds between two looks for a reply."""
+PAUSES = 5e-4, 0.02
+"""Seconds between two looks for a reply, at first and at last."""
 SOLVER_OF = "ROUGH_FRICTION_SOLVER_OF"
 """Environment variable of a solver's process and of all that it starts: its value is the run's mark."""
 _SERVE = """import sys
@@ -76,21 +77,29 @@ def pose(child: subprocess.Popen[bytes], folder: Path, number: int, problem: obj
 def reply(
     child: subprocess.Popen[bytes], path: Path, seconds: float, length: int = 0
 ) -> tuple[dict[str, Any], bytes]:
-    """Read a reply and the ``length`` bytes of an answer. Raises `Reported` for what came instead."""
-    deadline = time.monotonic() + seconds
-    while not path.exists():
-        if child.poll() is not None and not path.exists():
-            raise Reported(f"the solver's process died ({exit_text(child.returncode)})")
-        if time.monotonic() > deadline:
-            raise Reported(f"no answer within {seconds:g} s")
-        time.sleep(POLL)
+    """Read a reply with the ``length`` bytes of an answer, once. Raises `Reported` for what came instead."""
+    if not wait_until(lambda: os.path.exists(path) or has_ended(child.pid), seconds):
+        raise Reported(f"no answer within {seconds:g} s")
+    if has_ended(child.pid) and not os.path.exists(path):
+        raise Reported(f"the solver's process died ({exit_text(reap(child))})")
     with suppress(OSError, ValueError, RecursionError):
-        if path.is_file():  # a pipe would be read for ever
-            with path.open("rb") as file:
-                header, body = json.loads(file.readline(LONGEST_HEADER)), file.read(length + 1)
-            if isinstance(header, dict) and len(body) == length * (header.get("kind") == "answer"):
-                return header, body
+        with open_regular(path) as file:
+            header, body = json.loads(file.readline(LONGEST_HEADER)), file.read(length + 1)
+        for read in (path, path.with_suffix(".problem")):
+            with suppress(OSError):
+                read.unlink()
+        if isinstance(header, dict) and len(body) == length * (header.get("kind") == "answer"):
+            return header, body
     raise Reported("the solver's process sent something else than an answer")
+
+
+def wait_until(holds: Callable[[], bool], seconds: float) -> bool:
+    """Return whether a condition holds by then; it is looked at in growing pauses."""
+    deadline, (pause, longest) = time.monotonic() + seconds, PAUSES
+    while not (held := holds()) and time.monotonic() < deadline:
+        time.sleep(pause)
+        pause = min(1.05 * pause, longest)
+    return held
 
 
 def exit_text(status: int | None) -> str:
@@ -116,15 +125,19 @@ def serve(folder: str) -> None:
     ending = threading.Lock()  # who holds it alone writes to the folder, or removes it
     given = (asked, numbers, folder, os.environ[SOLVER_OF], ending)  # a solver may clear its environment
     threading.Thread(target=_listen, args=given, daemon=True).start()
-    _answer(Path(folder), numbers, ending)
-    ending.acquire()  # kept: the other thread is not cut off half-way
-    shutil.rmtree(folder, ignore_errors=True)
+    served_by = os.getpid()
+    try:
+        _answer(Path(folder), numbers, ending)
+    finally:
+        if os.getpid() == served_by:  # no child that the solver forked
+            ending.acquire()  # kept: the other thread is not cut off half-way
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def _listen(
     asked: Iterable[str], numbers: queue.SimpleQueue[int], folder: str, mark: str, ending: threading.Lock
 ) -> None:
-    with suppress(OSError):
+    with suppress(OSError, ValueError):  # a solver may have opened a file in the pipe's place
         for line in asked:
             numbers.put(int(line))
     numbers.put(0)
@@ -196,11 +209,16 @@ def _marked(mark: str) -> set[psutil.Process]:
     return found
 
 
-def _gone(processes: Iterable[psutil.Process], seconds: float) -> None:
-    """Wait until none of the processes is alive, for so many seconds at most."""
-    deadline = time.monotonic() + seconds
-    while any(map(_alive, processes)) and time.monotonic() < deadline:
-        time.sleep(0.01)
+def _gone(processes: Iterable[psutil.Process]) -> bool:
+    return not any(map(_alive, processes))
+
+
+def reap(leader: subprocess.Popen[bytes]) -> int:
+    """Kill the group of a process, and return its exit status: then its number may be anybody's."""
+    if leader.returncode is None:
+        kill_group(leader.pid)
+        leader.kill()
+    return leader.wait()
 
 
 def end_all(leader: subprocess.Popen[bytes], mark: str) -> list[str]:
@@ -209,15 +227,14 @@ def end_all(leader: subprocess.Popen[bytes], mark: str) -> list[str]:
     These are the processes below it, those that carry the mark in their environment, and what they start.
     """
     below: set[psutil.Process] = set()
-    with suppress(psutil.Error):
-        below = {*psutil.Process(leader.pid).children(recursive=True)}
-    with suppress(OSError, subprocess.TimeoutExpired):
-        assert leader.stdin is not None
-        leader.stdin.close()
-        leader.wait(PATIENCE)
-    kill_group(leader.pid)
-    leader.kill()
-    leader.wait()
+    if leader.returncode is None:
+        with suppress(psutil.Error):
+            below = {*psutil.Process(leader.pid).children(recursive=True)}
+        with suppress(OSError):
+            assert leader.stdin is not None
+            leader.stdin.close()
+        wait_until(lambda: has_ended(leader.pid), PATIENCE)
+        reap(leader)
     found: dict[int, str] = {}
     for _ in range(ROUNDS):
         left = {each for each in below | _marked(mark) if _alive(each)}
@@ -229,5 +246,5 @@ def end_all(leader: subprocess.Popen[bytes], mark: str) -> list[str]:
                 if not in_session(each.pid, leader.pid):
                     found.setdefault(each.pid, f"{' '.join(each.cmdline())[:80]} (process {each.pid}): ended")
                 each.kill()
-        _gone(left, PATIENCE)
+        wait_until(partial(_gone, left), PATIENCE)
     return [found[pid] for pid in sorted(found)]

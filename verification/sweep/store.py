@@ -1,7 +1,8 @@
 """Results kept in one SQLite file: a row per finished run, written at once or not at all.
 
 The journal is a write-ahead log, so that a run is either in the table or not after a kill at any moment, and
-others may read while a sweep writes. Of two sweeps that finish the same run the first one's row is kept.
+others may read while a sweep writes. Two sweeps may share a store on one machine, not across a network file
+system, where SQLite cannot keep such a log. Of a run that both have begun the first one's row is kept.
 
 Damage is found before it is used: on opening, the file's structure, its schema and the checksum of every row
 are compared with what this module writes. A refusal deletes nothing: a new store may stay, without runs.
@@ -32,7 +33,7 @@ _TABLE = f"""runs (
     {", ".join((*COORDINATES, *OUTCOMES))},
     inputs text not null, seconds real not null, checksum text not null
 ) without rowid"""
-_INSERT = f"insert or ignore into runs values ({', '.join('?' * len(_ALL))})"
+_INSERT = f"insert into runs values ({', '.join('?' * len(_ALL))}) on conflict (key) do nothing"
 _SELECT = f"select {', '.join(_ALL)} from runs"
 
 
@@ -106,6 +107,8 @@ def open_store(path: Path) -> Iterator[Store]:
         store = Store(connection, path)
         try:
             yield store
+        except sqlite3.IntegrityError:  # a row of ours is wrong, not the file
+            raise
         except sqlite3.Error as refused:
             raise _unusable(path, refused) from refused
         store.check_place()

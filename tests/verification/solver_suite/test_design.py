@@ -5,18 +5,20 @@ from __future__ import annotations
 import itertools
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from refimpl.grid import Array
-from verification.solver_suite import own
+from verification.solver_suite import covering, own
+from verification.solver_suite.checks.covering import further
 from verification.solver_suite.covering import FILE, stored, text
 from verification.solver_suite.design import further_rows, in_turn, posed, rows, shape_of
 from verification.solver_suite.dimensions import CHANGED, DESIGNS, FURTHER
 from verification.solver_suite.isolated import Limited
 from verification.solver_suite.protocol import ContactProblem
-from verification.solver_suite.suite import run, select, suite, thorough
+from verification.solver_suite.suite import identity, run, select, suite, thorough
 
 SEARCHED = ("large", "capped")
 """Designs whose search takes a second at most."""
@@ -38,6 +40,23 @@ def test_every_combination_of_levels_occurs(name: str) -> None:
 )
 def test_the_stored_rows_are_those_that_the_search_finds(name: str) -> None:
     assert text(name) == json.loads(FILE.read_text(encoding="utf-8"))[name]
+
+
+def test_a_changed_row_changes_the_digest_of_the_suite(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One of ``--thorough`` too; those of the suite are read at its import, and are in its claims."""
+    before, found = identity()["digest"], json.loads(FILE.read_text(encoding="utf-8"))
+    found["plain-2"].reverse()
+    (tmp_path / "changed.json").write_text(json.dumps(found))
+    monkeypatch.setattr(covering, "FILE", tmp_path / "changed.json")
+    for read in (further_rows, further):
+        read.cache_clear()
+    try:
+        assert identity()["digest"] != before
+    finally:
+        for read in (further_rows, further):
+            read.cache_clear()
 
 
 def test_problems_in_turn_differ_in_one_dimension() -> None:

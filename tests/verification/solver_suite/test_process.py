@@ -1,23 +1,29 @@
-"""Processes of solvers: the judge is out of their reach, and nothing that a run started goes on after it."""
+"""Processes of solvers: none can change its judge, and nothing that a run started goes on after it."""
 
 from __future__ import annotations
 
 import json
 import os
 import signal
+import subprocess
+import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import psutil
 import pytest
 
+from refimpl.errors import InputError
 from tests.verification.cli.children import forked, started
 from verification.cli import main
 from verification.cli.suite_run import unwinding
-from verification.framework.case import Result
-from verification.solver_suite import identity, isolated
+from verification.framework.case import Reported, Result
+from verification.solver_suite import identity, isolated, process
 from verification.solver_suite.isolated import Named
+from verification.solver_suite.protocol import ContactProblem
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="signals and forks of POSIX")
 SLEEPER = "sh -c 'echo $$ > pid; exec sleep 600' "
@@ -30,6 +36,15 @@ def solve(problem):
     os.rename("pid.new", "pid")
     os.environ.clear()
     time.sleep(600)
+
+opened = []
+
+def reopens(problem):  # a file in the place of every descriptor, from the first problem on
+    if opened:
+        solve(problem)
+    os.closerange(3, 64)
+    opened.extend(open(__file__) for _ in range(60))
+    return 0 * problem.gap
 """
 SOLVERS = r'''
 import os, shutil, subprocess, sys, time
@@ -86,6 +101,16 @@ def pipes(problem):
 @on_one_element
 def removes(problem):
     shutil.rmtree(folder())
+
+@on_one_element
+def forges(problem):
+    (folder() / "1.part").write_bytes(b'{"kind": "answer"}\n' + np.full(problem.shape, np.nan).tobytes())
+    os.replace(folder() / "1.part", folder() / "1")
+    time.sleep(600)
+
+def vanishes(problem):
+    os.remove(__file__)
+    os._exit(3)
 
 def twice(problem):
     return 2 * np.asarray(own.solve(problem).pressure)
@@ -183,6 +208,61 @@ def test_a_solver_without_an_answer_is_an_error_of_its_case_and_the_rest_still_r
     assert first.note.startswith(note)
 
 
+PROBLEM = ContactProblem(np.zeros((2, 2)), spacing=1e-6, reduced_modulus=1e9, load=4e-6)
+
+
+@pytest.fixture
+def temporary(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The directory of the solvers' folders."""
+    (folder / "tmp").mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(folder / "tmp"))
+    return folder / "tmp"
+
+
+def test_the_folder_of_a_solver_does_not_grow(temporary: Path) -> None:
+    remote = isolated.Remote(Named("hostile:twice").solver, 60.0, "twice")
+    for _ in range(2):
+        assert np.shape(remote(PROBLEM).pressure) == (2, 2)
+    (own_folder,) = temporary.iterdir()
+    assert [file.name for file in own_folder.iterdir()] == ["source"]
+    remote.close()
+    remote.close()
+    assert not list(temporary.iterdir())
+
+
+def test_a_solver_that_cannot_be_started_again_says_so_each_time(temporary: Path) -> None:
+    remote = isolated.Remote(Named("hostile:vanishes").solver, 60.0, "vanishes")
+    with pytest.raises(Reported, match="exit status 3"):
+        remote(PROBLEM)
+    for _ in range(2):
+        with pytest.raises(InputError, match="No module named 'hostile'"):
+            remote(PROBLEM)
+    remote.close()
+    assert not list(temporary.iterdir())
+
+
+def test_a_process_that_cannot_be_started_leaves_no_folder(
+    temporary: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "executable", "no-such-python")
+    with pytest.raises(FileNotFoundError, match="no-such-python"):
+        isolated.Remote(Named("hostile:twice").solver, 60.0, "twice")
+    assert not list(temporary.iterdir())
+
+
+def test_a_process_that_fails_on_its_own_removes_its_folder(tmp_path: Path) -> None:
+    (tmp_path / "own").mkdir()
+    child = process.start(len, tmp_path / "own", "nobody's mark")  # type: ignore[arg-type]  # takes no solver
+    assert child.wait(60) == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_forged_reply_is_judged_like_any_other(folder: Path) -> None:
+    (result,) = isolated.run(Named("hostile:forges").solver, CASES[:1], timeout=60.0)
+    assert (result.status, result.error) == ("error", None)
+    assert "pressures are not finite" in result.note
+
+
 @pytest.mark.parametrize(("name", "status"), [("twice", "fail"), ("patches", "fail"), ("forks", "pass")])
 def test_a_solver_that_patches_the_judge_or_forks_is_judged_once_a_case(
     folder: Path, name: str, status: str
@@ -266,6 +346,7 @@ def test_an_interrupted_run_shows_and_writes_what_is_judged_so_far(
             for how in (signal.SIGINT, signal.SIGTERM)
         ),
         (["--exec", SLEEPER], signal.SIGKILL),
+        (["--solver", "sleeper:reopens", "--only", "solver/pins"], signal.SIGKILL),
         *(
             pytest.param(["--solver", "sleeper:solve"], how, marks=pytest.mark.nightly)
             for how in (signal.SIGHUP, signal.SIGKILL)
@@ -303,3 +384,13 @@ def test_an_ignored_signal_stays_so() -> None:
         return 3
 
     assert forked(act).status == 3
+
+
+def test_a_number_is_signalled_only_while_it_is_the_solvers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Once it is reaped, the system may give its number to anybody."""
+    signalled = list[bool]()
+    monkeypatch.setattr(process, "kill_group", lambda pid: signalled.append(psutil.pid_exists(pid)))
+    child = subprocess.Popen([sys.executable, "-c", ""], stdin=subprocess.PIPE, start_new_session=True)
+    assert process.end_all(child, "nobody's mark") == []
+    assert process.end_all(child, "nobody's mark") == []
+    assert signalled == [True]

@@ -220,6 +220,14 @@ def test_a_run_is_kept_once(tmp_path: Path, finished: tuple[Run, Row, float]) ->
         assert len(list(kept.finished([finished[0]]))) == 1
 
 
+def test_a_row_that_lacks_what_every_row_has_is_no_fault_of_the_file(
+    tmp_path: Path, finished: tuple[Run, Row, float]
+) -> None:
+    run, row, _ = finished
+    with pytest.raises(sqlite3.IntegrityError, match="seconds"), open_store(tmp_path / "s.sqlite") as kept:
+        kept.add(run, row, float("nan"))
+
+
 def test_numbers_that_do_not_exist_are_kept_as_none(tmp_path: Path, finished: tuple[Run, Row, float]) -> None:
     run, row, seconds = finished
     with open_store(tmp_path / "s.sqlite") as kept:
