@@ -323,6 +323,17 @@ def test_a_map_of_which_almost_all_is_missing_is_filled() -> None:
     assert (filled <= 2.0).all()
 
 
+@pytest.mark.parametrize("length", [1e-6, 1e-4])
+def test_a_large_hole_is_filled_on_long_pixels_too(length: float) -> None:
+    """Laplace's equation holds on its points, with differences over the pixel's lengths."""
+    z = np.random.default_rng(1).standard_normal((130, 130))
+    z[5:125, 5:125] = np.nan
+    z = missing_points.fill(z, (1e-6, length))
+    along = (z[4:124, 5:125] + z[6:126, 5:125] - 2 * z[5:125, 5:125]) / 1e-6**2
+    across = (z[5:125, 4:124] + z[5:125, 6:126] - 2 * z[5:125, 5:125]) / length**2
+    assert np.abs(along + across).max() * 1e-6**2 < 1e-9
+
+
 @pytest.mark.parametrize("suffix", [".mat", ".npz"])
 @pytest.mark.parametrize("grid", ["xy", "ij", "vectors"])
 def test_z_beside_x_and_y_is_the_map_where_they_say(tmp_path: Path, suffix: str, grid: str) -> None:
