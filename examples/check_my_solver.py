@@ -10,7 +10,7 @@ from refimpl.kernels import normal_integral
 from verification.solver_suite import suite
 from verification.solver_suite.protocol import Abilities, Answer, ContactProblem
 
-ONLY = sys.argv[1] if len(sys.argv) > 1 else "solver/*"
+ONLY = sys.argv[1] if len(sys.argv) > 1 else "solver/[!d]*"
 PICTURE = sys.argv[2] if len(sys.argv) > 2 else "check_my_solver.png"
 
 
@@ -44,6 +44,7 @@ for label, results, shift in (("right", ran, -0.2), ("1 % too stiff", wrong, 0.2
     axes.barh(np.arange(len(shares)) + shift, shares, height=0.4, label=label)
 axes.set_yticks(range(len(ran)), [r.id.partition("/")[2] for r in ran])
 axes.axvline(1, color="k", ls="--", lw=1)
+axes.invert_yaxis()
 figure.legend(loc="outside upper center", ncols=2)
 axes.set(xscale="log", xlabel="error over tolerance; below 1: pass")
 axes.set_xticks([1e-8, 1e-4, 1, 1e4], ["1e-8", "1e-4", "1", "1e4"])

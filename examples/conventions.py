@@ -27,7 +27,7 @@ arc = np.linspace(0, phi, 20)
 top.plot(0.9 * np.cos(arc), 0.9 * np.sin(arc), "k", lw=1.2)
 top.annotate("phi", (0.95, 0.18))
 side.axvline(ahead, color="0.5", ls="--", lw=1, label="centre of pressure")
-side.set(xlabel="x (mm)", ylabel="z (µm)", xlim=(-1.8, 1.8), ylim=(-420, 400))
+side.set(xlabel="x (mm)", ylabel="z (µm)", xlim=(-1.8, 1.8), ylim=(-250, 400))
 side.set_title("section, phi = 0 (heights stretched)")
 for axes, start, stop, colour, at, text in (
     (top, (0, 0), (1.3, 0.75), ORANGE, (0.6, 0.95), "sliding"),
@@ -41,5 +41,5 @@ for axes, start, stop, colour, at, text in (
 ):
     axes.annotate("", stop, start, arrowprops={"arrowstyle": "-|>", "lw": 1.8, "color": colour})
     axes.annotate(text, at)
-side.legend(loc="lower center", ncols=1)
+figure.legend(*side.get_legend_handles_labels(), loc="outside lower center", ncols=2)
 figure.savefig(PICTURE, dpi=100)

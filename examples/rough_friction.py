@@ -20,10 +20,10 @@ print(f"{found.status.value} on {found.grid}")
 print(f"mu = {mu:.4f} +- {sum(parts.values()):.4f}")
 print(f"A  = {area * 1e6:.4f} +- {found.error('contact_area_corrected') * 1e6:.4f} mm^2")
 
-figure, (top, below) = plt.subplots(2, 1, figsize=(5.2, 6.1), layout="constrained", height_ratios=(4, 1.3))
+figure, (top, below) = plt.subplots(2, 1, figsize=(5.6, 6.1), layout="constrained", height_ratios=(4, 1.3))
 image = top.imshow(found.pressure.T / 1e6, origin="lower", extent=(-1, 1, -1, 1), cmap="magma")
 figure.colorbar(image, ax=top, label="contact pressure (MPa)")
-top.set(xlabel="x, along the sliding (mm)", ylabel="y (mm)", xlim=(-0.6, 0.6), ylim=(-0.6, 0.6))
+top.set(xlabel="x, along the sliding (mm)", ylabel="y (mm)", xlim=(-0.7, 0.7), ylim=(-0.7, 0.7))
 end = 0.0
 for name, part in parts.items():
     share = 100 * part / mu
@@ -31,5 +31,5 @@ for name, part in parts.items():
     end += share
 below.axvline(ACCURACY * 100, color="k", ls="--", label=f"requested {100 * ACCURACY:g} %")
 below.set(xlabel="error bar of mu, in parts (% of mu)", yticks=[], ylim=(-0.4, 2.6))
-below.legend(loc="upper left", fontsize=9)
+below.legend(loc="upper left")
 figure.savefig(PICTURE, dpi=100)

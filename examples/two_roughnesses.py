@@ -23,6 +23,6 @@ for axes, surface, name in zip(panels, (ground, fractal), names, strict=True):
     print(f"{name}: rms {z.std():.2f} um")
     image = axes.imshow(z.T, origin="lower", extent=(0, 1, 0, 1), cmap="cividis", vmin=-1.5, vmax=1.5)
     axes.set(title=name, ylabel="y (mm)")
-    figure.colorbar(image, ax=axes, label="height (µm)")
+    figure.colorbar(image, ax=axes, label="height (µm)", extend="both")
 panels[1].set(xlabel="x (mm)")
 figure.savefig(PICTURE, dpi=100)

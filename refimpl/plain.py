@@ -1,4 +1,4 @@
-"""The whole model on one page: friction between two rough elastic half-spaces, by dense matrices and numpy.
+"""The whole model in one file: friction between two rough elastic half-spaces, by dense matrices and numpy.
 
 Source: Karpenko and Akay (2001), Eqs (1) to (8). It imports nothing of this project. One value an element;
 heights point upwards, displacements into the bodies; s is along the sliding, t 90 degrees anticlockwise:

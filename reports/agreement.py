@@ -16,6 +16,17 @@ import numpy as np
 
 from reports.findings import number
 from reports.results import OTHER_SHAPE, Case
+from verification.reproduction.printed import (
+    AREA_FLUCTUATION,
+    CORRELATION_LENGTH,
+    FLAT_RMS,
+    FRICTION_FLUCTUATION,
+    HERTZ_PRESSURE,
+    HERTZ_RADIUS,
+    LARGEST_SLOPE,
+    LOWEST_FRICTION,
+    QUOTED_SLOPES,
+)
 
 Cases = Mapping[str, Case]
 
@@ -86,20 +97,20 @@ FINEST = 512  # elements per side of the paper's fine mesh
 
 # lines longer than E501 allows: one printed number a line, as in a table
 SINGLE = (  # part, quantity, label, unit, printed, half a unit, case, key, factor
-    ("Table 1", "Hertz, R = 0.14 m", "contact radius a0", "mm", 0.452, 5e-4, "hertz/radius-corrected", "value", 1e3),  # noqa: E501
-    ("Table 1", "Hertz, R = 0.14 m", "peak pressure", "MPa", 163.9, 0.05, "hertz/peak-pressure", "value", 1e-6),  # noqa: E501
-    ("Fig. 4", "correlation radius", "autocorrelation 10 %", "µm", 104.0, 0.5, "reproduction/fig4-correlation", "radius (um)", 1.0),  # noqa: E501
-    ("Fig. 4", "rms slope", "0.084 µm", "deg", 0.125, 5e-4, "reproduction/fig4-slopes", "rms of a component (deg)#0", 1.0),  # noqa: E501
-    ("Fig. 4", "rms slope", "1.680 µm", "deg", 2.5, 5e-3, "reproduction/fig4-slopes", "rms of a component (deg)#1", 1.0),  # noqa: E501
-    ("Fig. 4", "largest slope", "1.680 µm, mean of the largest", "deg", 6.5, 0.05, "reproduction/largest-slope", "largest gradient (deg)", 1.0),  # noqa: E501
-    ("Fig. 8", "τ/H + β, Eq. (11)", "arithmetic of the formula", "", 0.1, 0.05, "reproduction/eq11", "Eq. (11)", 1.0),  # noqa: E501
+    ("Table 1", "Hertz, R = 0.14 m", "contact radius a0", "mm", 1e3 * HERTZ_RADIUS, 5e-4, "hertz/radius-corrected", "value", 1e3),  # noqa: E501
+    ("Table 1", "Hertz, R = 0.14 m", "peak pressure", "MPa", 1e-6 * HERTZ_PRESSURE, 0.05, "hertz/peak-pressure", "value", 1e-6),  # noqa: E501
+    ("Fig. 4", "correlation radius", "autocorrelation 10 %", "µm", 1e6 * CORRELATION_LENGTH, 0.5, "reproduction/fig4-correlation", "radius (um)", 1.0),  # noqa: E501
+    ("Fig. 4", "rms slope", "0.084 µm", "deg", QUOTED_SLOPES[FLAT_RMS[0]], 5e-4, "reproduction/fig4-slopes", "rms of a component (deg)#0", 1.0),  # noqa: E501
+    ("Fig. 4", "rms slope", "1.680 µm", "deg", QUOTED_SLOPES[FLAT_RMS[1]], 5e-3, "reproduction/fig4-slopes", "rms of a component (deg)#1", 1.0),  # noqa: E501
+    ("Fig. 4", "largest slope", "1.680 µm, mean of the largest", "deg", LARGEST_SLOPE, 0.05, "reproduction/largest-slope", "largest gradient (deg)", 1.0),  # noqa: E501
+    ("Fig. 8", "τ/H + β, Eq. (11)", "arithmetic of the formula", "", LOWEST_FRICTION, 0.05, "reproduction/eq11", "Eq. (11)", 1.0),  # noqa: E501
     ("Fig. 8", "ψ(0.5 µm), Eq. (12)", "ε = 3.15 µm as printed", "", 1.0, 0.5, "reproduction/fig8-threshold", "psi at 0.5 um as printed", 1.0),  # noqa: E501
     *(
         (SCATTER, quantity, f"{rms} µm", "%", printed, 0.05, f"reproduction/{case}", f"{key}#{k}", 100.0)
         for quantity, printed, case, key in (
-            ("scatter of A", 7.5, "section8-scatter", "scatter of A"),
-            ("scatter of μ", 1.0, "section8-scatter", "scatter of mu"),
-            ("scatter of μ, β = 0", 7.5, "section8-beta0", "scatter of mu"),
+            ("scatter of A", 100 * AREA_FLUCTUATION, "section8-scatter", "scatter of A"),
+            ("scatter of μ", 100 * FRICTION_FLUCTUATION, "section8-scatter", "scatter of mu"),
+            ("scatter of μ, β = 0", 100 * AREA_FLUCTUATION, "section8-beta0", "scatter of mu"),
         )
         for k, rms in enumerate(("0.504", "1.008", "1.680"))
     ),

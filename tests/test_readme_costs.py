@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from tests.documents import ROOT
-from verification.benchmarks.codes import OWN, SHEARED, SLOPED
+from verification.benchmarks.codes import ALONE, OWN, SHEARED, SLOPED
 from verification.benchmarks.page import EVERY, PEER, QUICKEST, Number, Ratios, Rows, newest, over, table
 from verification.output.result_files import committed
 
@@ -23,15 +25,30 @@ def at_512(number: Number, codes: frozenset[str] = EVERY) -> list[float]:
     return [spread["median"] for spread in spreads if spread is not None]
 
 
-def seconds(ratios: Ratios, rows: Rows) -> dict[str, float]:
-    return dict(rows[OWN]["seconds"])
+def seconds(code: str, ratios: Ratios, rows: Rows) -> dict[str, float]:
+    return dict(rows[code]["seconds"])
+
+
+def test_error_bars_take_as_long_as_is_said() -> None:
+    """Without friction, on one and two threads, on both flats: the rest of a solve over its solver alone."""
+    shares: dict[int, list[float]] = {}
+    for (_, M, _), (_, rows) in newest(RUNS).items():
+        whole, alone = (rows[code]["seconds"]["median"] for code in (OWN, ALONE))
+        shares.setdefault(M, []).append(whole / alone - 1)
+    (cell,) = row("error bars and warnings")
+    least, most = min(shares[512]), max(shares[512])
+    said = f"about as long as the solver at 128 x 128, {least:.1f} to {most:.1f} times at 512 x 512"
+    assert cell == f"{said} (without friction)"
+    assert 0.8 < min(shares[128]) <= max(shares[128]) < 1.25
 
 
 def test_what_is_said_first_is_so() -> None:
-    smooth, rough = at_512(seconds)
     readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
-    assert f"{smooth:.2f} s on a smooth flat, {rough:.2f} s on a rough one, with error bars" in readme
-    assert row("this code, from a scene to numbers with error bars") == [f"{smooth:.2f} s", f"{rough:.2f} s"]
+    smooth, rough = at_512(partial(seconds, SLOPED))
+    flats = f"{smooth:.2f} s on a smooth flat, {rough:.2f} s on a rough one"
+    assert f"{flats}, with friction and slopes, with error bars, on one thread (November 2026;" in readme
+    label = "this code without friction, from a scene to numbers with error bars"
+    assert row(label) == [f"{number:.2f} s" for number in at_512(partial(seconds, OWN))]
     shares = {
         "the same with friction": at_512(over(SHEARED)),
         "the same with friction and slope terms": at_512(over(SLOPED)),

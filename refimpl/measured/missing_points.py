@@ -17,7 +17,7 @@ from refimpl.grid import Array
 MAX_ELIMINATED = 4096  # points of one hole: 40 ms by elimination
 MAX_TOGETHER = 2**18  # points of all small holes: 0.5 s and 200 MB by elimination
 TOLERANCE = 1e-12  # residual over that of the middle height: 1e-9 of the height range around the hole
-_MAX_STEPS = 60  # of cycles; 22 on 300 x 300 square points
+_MAX_STEPS = 60  # cycles; 22 on 300 x 300 square points
 _COARSEST = 16  # points
 _DAMPING = 0.7  # damping of Jacobi's smoothing
 _OVERCORRECTION = 1.5  # piecewise constant corrections have too much energy

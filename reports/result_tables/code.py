@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+import itertools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from reports.evidence import Evidence
@@ -72,9 +73,16 @@ def costs(benchmarks: Mapping[str, Any]) -> str:
         "Table 1's contact to a relative duality gap of 1e-8, recomputed for every code. Seconds of this "
         "code: the solver alone; from a scene to numbers with error bars; with friction; with friction and "
         "slopes. Of other codes: ratio of their time to this code's with error bars, median of the newest "
-        "run on that grid. Runs are of several machines, and of one thread or more, as the report states."
+        f"run on that grid. Runs are of machines with {' and '.join(_machines(benchmarks['runs']))}, and of "
+        "one thread or more, as the report states."
     )
     return section("Time", text, head, rows)
+
+
+def _machines(runs: Iterable[Mapping[str, Any]]) -> list[str]:
+    """Return the kinds of machine of all runs."""
+    found = [run["provenance"]["machine"] for run in runs]
+    return sorted({f"{machine['cores']} cores ({machine['processor']})" for machine in found})
 
 
 def _median(row: Mapping[str, Any] | None) -> float | None:
@@ -84,26 +92,46 @@ def _median(row: Mapping[str, Any] | None) -> float | None:
 
 def accuracy_costs(costs: Mapping[str, Any]) -> str:
     """Show the coarsest grid for each accuracy, by class of scene."""
-    labels = {"friction_coefficient": "μ", "contact_area": "A", "max_pressure": "p_max"}
-    labels |= {"friction_coefficient_corrected": "μ, corrected", "contact_area_corrected": "A, corrected"}
+    labels = {"friction_coefficient_corrected": "μ, corrected", "contact_area_corrected": "A, corrected"}
+    labels["max_pressure"] = "p_max"
     demands = sorted({entry["error"] for one in costs["classes"] for entry in one["prices"]}, reverse=True)
     rows: list[Row] = []
     for one in costs["classes"]:
         offers = {(entry["quantity"], entry["error"]): entry for entry in one["prices"]}
         for quantity in dict.fromkeys(quantity for quantity, _ in offers):
             label = labels[quantity]
-            cells = (_grid_and_seconds(offers[quantity, demand]) for demand in demands)
+            cells = (_cost(offers[quantity, demand], one["ladders"]) for demand in demands)
             rows.append((one["class"], label, *cells, link("accuracy_costs")))
     head = ("class of scenes", "number", *(f"{100 * demand:g} %" for demand in demands), "file")
     text = (
         "Coarsest grid (seconds) that keeps the relative error on itself and all finer ones, against a "
-        "grid of 2048²; medians of three realisations, with friction and slopes."
+        "grid of 2048² whose error bar is added, with friction and slopes. A median of three realisations "
+        "is given only where each of them meets the demand. *> 1024²*: at least one meets it on no grid, "
+        "because it needs a finer one or its reference is itself uncertain; in brackets how many meet it, "
+        "and the finest grid that these take."
     )
     return section("Cost and accuracy", text, head, rows)
 
 
-def _grid_and_seconds(entry: Mapping[str, Any]) -> str:
-    return "> 1024²" if entry["M"] is None else f"{entry['M']:.0f}² ({entry['seconds']:.2g})"
+def _cost(entry: Mapping[str, Any], realisations: Sequence[Sequence[Mapping[str, Any]]]) -> str:
+    """Return the median grid and its seconds, or how many realisations meet the demand where not all do.
+
+    >>> ends = [[{"M": M, "errors": {"mu": e}} for M, e in ((32, 0.01), (1024, e))] for e in (0.01, None)]
+    >>> _cost({"quantity": "mu", "error": 0.03, "M": None, "seconds": None}, ends)
+    '> 1024² (1 of 2: 32²)'
+    """
+    if entry["M"] is not None:
+        return f"{entry['M']:.0f}² ({entry['seconds']:.2g})"
+    grids = [_coarsest(rows, entry["quantity"], entry["error"]) for rows in realisations]
+    met = [grid for grid in grids if grid is not None]
+    return f"> 1024² ({len(met)} of {len(grids)}: {max(met)}²)" if met else "> 1024²"
+
+
+def _coarsest(rows: Sequence[Mapping[str, Any]], quantity: str, demand: float) -> int | None:
+    """Return the coarsest grid that meets a demand together with all finer ones; None is unbounded."""
+    errors = [(row["M"], row["errors"].get(quantity)) for row in reversed(rows)]
+    met = list(itertools.takewhile(lambda at: at[1] is not None and at[1] <= demand, errors))
+    return met[-1][0] if met else None
 
 
 COUNTED = (*STATUSES[:1], RECORDED, *STATUSES[1:])

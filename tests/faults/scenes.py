@@ -1,4 +1,4 @@
-"""Four scenes, their numbers by the one-page reference, and by whichever `refimpl` is imported."""
+"""Four scenes, their numbers by the one-file reference, and by whichever `refimpl` is imported."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Record = dict[str, Any]
 
 
 def expected(name: str) -> Record:
-    """Numbers by the one-page reference, with the status that production should end with."""
+    """Numbers by the one-file reference, with the status that production should end with."""
     scene = drawn(SEEDS[name])
     s = scene.plain()
     assert s.ended == "converged"

@@ -1,4 +1,4 @@
-"""Faults in copies of the production solver that only the comparison with the one-page reference sees."""
+"""Faults in copies of the production solver that only the comparison with the one-file reference sees."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def solved(folder: Path, fault: Fault | None = None) -> dict[str, Record]:
 
 @cache
 def reference(name: str) -> Record:
-    """Return a scene's record by the one-page reference."""
+    """Return a scene's record by the one-file reference."""
     return expected(name)
 
 

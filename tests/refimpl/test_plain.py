@@ -1,4 +1,4 @@
-"""The one-page reference: known answers, and the production solver on random scenes over all parameters."""
+"""The one-file reference: known answers, and the production solver on random scenes over all parameters."""
 
 from __future__ import annotations
 

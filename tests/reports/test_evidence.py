@@ -13,6 +13,7 @@ from reports.findings import fields
 from reports.results import ResultFileError, check, worst
 from tests.documents import ROOT
 from tests.reports.sample import ERRATUM, case, results
+from verification.cases.paper import section8
 from verification.framework.registry import load
 from verification.output.result_files import read_results
 
@@ -60,6 +61,12 @@ def test_every_pattern_of_the_paper_finds_a_case() -> None:
             assert any(fnmatchcase(id, pattern) for id in known), (claim.label, pattern)
         for id, _ in fields(claim.finding):
             assert id.startswith("numbers/") or id in known or f"{id}-full" in known, (claim.label, id)
+
+
+def test_the_plotting_accuracy_of_a_claim_is_that_of_its_case() -> None:
+    (claim,) = (claim for claim in paper() if claim.label == "Fig. 8(a): exponential")
+    assert [text.partition(" < ")[2] for text in claim.holds] == [str(section8.PLOTTING)]
+    assert f"plotting accuracy, {100 * section8.PLOTTING:g} % of the fall" in claim.condition
 
 
 def test_no_claim_holds_on_missing_or_failed_evidence() -> None:

@@ -21,8 +21,9 @@ from reports.agreement import (
     verdict_of,
 )
 from reports.findings import MISSING, by_claim, filled
-from reports.front_page import front_page
+from reports.front_page import LEVEL, front_page
 from tests.reports.sample import case
+from verification.coverage import classes
 
 CASES = {
     "reproduction/table3-area": case("a/1", data={
@@ -185,6 +186,7 @@ COVERED = [
         "held": 0.9 + 0.011 * k,
         "held_of_usable": 0.9 + 0.011 * k,
         "usable": 0.5,
+        "unbounded": 0.2 * (k == 2),
         "p": 0.001 if kind and k == 2 else 0.5,
         "median_bar_over_error": 1.234 + k,
     }
@@ -195,6 +197,10 @@ STUDIES: dict[str, Any] = {
     "coverage_corrected": {"table": COVERED},
     "extremes": {"counts": {"right": 0, "wrong": 1, "crash": 2, "detected failure": 3}, "states": []},
 }
+
+
+def test_the_level_that_the_first_page_names_is_that_of_the_study() -> None:
+    assert LEVEL == classes.LEVEL
 
 
 def test_the_first_page_by_hand() -> None:
@@ -214,8 +220,8 @@ def test_the_first_page_by_hand() -> None:
     bars, extremes = found.trust
     for text in (
         "corrected μ 90 %, 50 %, 1.2; ",
-        "p_max 92 %, 50 %, 3.2; ",
-        "Classes where coverage fails: p_max of flat (92 %)",
+        "p_max 92 % (90 % of the bounded), 50 %, 3.2; ",
+        "Classes where fewer than 92 % cover, beyond chance (probability below 1 %): p_max of flat (92 %)",
     ):
         assert text in bars
     assert "1 wrong beyond the conditioning of the input, 2 crashes, 3 failed and reported it" in extremes

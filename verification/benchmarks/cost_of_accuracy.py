@@ -4,7 +4,8 @@
 ``rough-friction tradeoff SCENE`` one scene. The error of a grid is that against a reference grid, whose own
 error bar is added. A grid meets a demand where it and all finer ones do. The table has two such grids with
 their seconds: that at which the error is met, which is known afterwards, and that at which the error bar
-shows it, which is what ``accuracy=`` takes.
+shows it, which is what ``accuracy=`` takes. Both are medians, given only where every realisation meets the
+demand: one whose reference is itself uncertain by more meets it on no grid.
 """
 
 from __future__ import annotations

@@ -36,7 +36,8 @@ CONSTANTS = Path("refimpl/data/error_bars.json")
 FEATURES = Path("reports/results/error_bar_features.json.gz")  # building scenes
 BUILT, JUDGED = Path("build/error_bars_built.jsonl"), Path("build/error_bars_judged.jsonl")  # runs, resumable
 JUDGEMENT = Path("reports/results/coverage_corrected.json.gz")
-BUILDING_SEED, JUDGING_SEED = 5_000_000, 10_000_000  # rules were built on 6 to 9 million, too
+BUILDING_SEED, JUDGING_SEED = 5_000_000, 10_000_000
+# Seeds from 6 to 9 million were looked at while rules were built
 EARLIER = "set before this program, by scenes of `verification.coverage.scenes`; no building scene gives it"
 FREEDOMS = 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 10.0
 _LEAST_WAVES = 0.005  # share of the rms gradient that a grid misses, from which its area is no edge's

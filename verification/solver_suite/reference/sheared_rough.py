@@ -4,8 +4,8 @@
 
 writes `sheared_rough.json.gz`: a ball on a rough flat of 24 x 24 elements, once with a settled contact edge,
 once with an alternating one (`CYCLED`). No code of others has friction with tau on slopes, so the answer is
-that of the one-page dense program `refimpl/plain.py`, of the same authors as the production solver. Its rule
-for elements without tau decides where the edge alternates; the other numbers follow from the active set.
+that of the dense program of one file, `refimpl/plain.py`, of the same authors as the production solver. Its
+rule for elements without tau decides where the edge alternates; the other numbers follow from the active set.
 """
 
 from __future__ import annotations
