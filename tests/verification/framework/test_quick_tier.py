@@ -33,7 +33,7 @@ NIGHTLY = {
 }  # fmt: skip
 """Cases of about a second of processor time and more, and those that share their solutions.
 
-Of such cases stay in `make test`: kernels against 50 digits, Hertz, the capped sphere, errata, errors over bars.
+Of such cases `make test` keeps: kernels to 50 digits, Hertz, the capped sphere, errata, errors over bars.
 """
 
 
