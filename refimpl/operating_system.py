@@ -6,7 +6,6 @@ Python that lacks them.
 
 from __future__ import annotations
 
-import ctypes
 import math
 import os
 import platform
@@ -115,12 +114,6 @@ def peak_memory() -> int:
         most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
         return most if sys.platform == "darwin" else 1024 * most
     return int(used.rss)
-
-
-def return_free_memory() -> None:
-    """Give the system back what the C library keeps of freed arrays below 32 MB (only glibc does)."""
-    with suppress(OSError, AttributeError, TypeError):
-        ctypes.CDLL(None).malloc_trim(0)
 
 
 @contextmanager

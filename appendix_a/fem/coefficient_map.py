@@ -74,8 +74,8 @@ class CoefficientMap:
         return rest - coupling(nu) * climb
 
     def _rest(self, part: Array, where: tuple[float, float], position: float) -> Array:
-        """Return the splines over slope and wavenumber, then the trigonometric polynomial through the
-        positions (m,).
+        """Return values of the splines over slope and wavenumber, then of the trigonometric polynomial
+        through the positions (m,).
 
         An offset x sees the waves at the phase 2 pi x / wavelength: over 1 / wavelength all repeat evenly.
         """

@@ -81,7 +81,7 @@ def _batch(job: tuple[float, float, tuple[float, ...]]) -> tuple[Array, Array, A
 
 
 def _geometry(slope: float, wavelength: float, position: float) -> tuple[Array, Array, float]:
-    """Return a and B (m,) beyond the first order over tan(slope)^2, and the error in percentage points."""
+    """Return A and B (m,) beyond the first order over tan(slope)^2, and the error in percentage points."""
     offsets = np.array(OFFSETS)
     levels = (0, 1, 2) if slope < STEEP else (1, 2, 3)
     solved = departures(slope, wavelength, position, offsets, levels)

@@ -294,7 +294,7 @@ def _translated(frozen: _Frozen, x: float, approach: float) -> Bounds:
 
 
 def _shear_row(frozen: _Frozen) -> float:
-    """Return 2-norm of a row of ``beta c`` from above: an element in each corner meets every offset
+    """Return the 2-norm of a row of ``beta c`` from above: an element in each corner meets every offset
     (m/Pa)."""
     if not frozen.coupled:
         return 0.0

@@ -56,6 +56,8 @@ def _missing(solved: Evidence) -> str | None:
     hardness = problem.pair.softer_hardness or math.inf
     if plan.requested.plastic is None and not plan.includes("plastic") and state.max_pressure > hardness:
         return "plastic"
+    if state.status not in (Status.CONVERGED, Status.CYCLED):
+        return None
     found = effects_in(
         plan.neglected, problem, state.pressure, state.clearance, plan.contact, plan.decided_on
     )
@@ -68,14 +70,15 @@ def _solve_problem(
 ) -> State:
     if problem.approach is not None and problem.approach <= 0:
         return _without_contact(problem)
-    full = at_hardness(problem)
-    if full is not None:
-        return full
     if method == "dense":
         return solve_reference(problem)
     if method == "paper":
         return solve_paper(problem, tolerance, counter)[0]
-    return solve_fft(problem, tolerance, counter, guess)
+    state = solve_fft(problem, tolerance, counter, guess)
+    if state.status in (Status.CONVERGED, Status.CYCLED):
+        return state
+    full = at_hardness(problem, counter)
+    return state if full is None else replace(full, iterations=state.iterations)
 
 
 def _without_contact(problem: Problem) -> State:

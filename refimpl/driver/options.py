@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 
 from refimpl.accuracy.refinement import check_accuracy, tolerance_for
@@ -11,7 +12,7 @@ from refimpl.grid import Grid
 from refimpl.measured.areal_parameters import implausible_slope
 from refimpl.model.friction import is_frictionless
 from refimpl.model.problem import Terms
-from refimpl.planning.plan import DECISION_GRID, METHODS, Method, Plan, make_plan, memory_of
+from refimpl.planning.plan import DECISION_GRID, LARGEST_DENSE, METHODS, Method, Plan, make_plan, memory_of
 from refimpl.scene.discretise import Discretiser
 from refimpl.scene.scene import Scene
 from refimpl.solution.quantities import check_has_bar, check_target
@@ -56,7 +57,8 @@ class Options:
             check_has_bar(self.target_quantity, self.scene.friction)
         require_number("tolerance", self.residual_tolerance, "a number between 0 and 1", above=0, below=1)
         if self.grid is None and self.accuracy is None:
-            object.__setattr__(self, "grid", self.scene.default_grid)
+            most = math.isqrt(LARGEST_DENSE) if self.method == "dense" else self.scene.default_grid
+            object.__setattr__(self, "grid", min(self.scene.default_grid, most))
         if self.grid is not None and self.accuracy is not None:
             raise InputError("grid", self.grid, "none beside an accuracy, which chooses the grid")
         for name, value in self.limits.given.items() if self.accuracy is None else ():
@@ -104,10 +106,12 @@ class Options:
         """Refuse a map whose slopes say that its unit or pixel is wrong, before its load is."""
         for name in ("lower", "upper"):
             for k, part in enumerate(self.scene.parts(name)):
-                known = part.pitch(self.scene.lengths) is not None
-                for doubt in implausible_slope(*part.data_points(self.solve_grid)) if known else ():
-                    said = f"{doubt} (its {size_text(self.scene.lengths)} m do not bear {self.scene.load} N)"
-                    allowed = f"heights of plausible slopes: {said}"
+                if part.pitch(self.scene.lengths) is None:
+                    continue
+                doubts = implausible_slope(*part.data_points(self.solve_grid))
+                if doubts:
+                    too_much = f"its {size_text(self.scene.lengths)} m do not bear {self.scene.load} N"
+                    allowed = f"heights of plausible slopes: {doubts[0]} ({too_much})"
                     raise InputError(f"{name}.surface[{k}]", part.label, allowed)
 
     def _check_strains(self) -> None:

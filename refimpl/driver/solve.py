@@ -61,7 +61,7 @@ def solve(
         seconds in all, bytes of the whole process; beyond them the status is `ACCURACY_NOT_REACHED`, with
         the finest grid within them. An interrupt (KeyboardInterrupt) has the last finished grid's solution as
         its argument
-    plastic : True ends pressures at the hardness of the softer body, False never does; None takes the
+    plastic : True caps pressures at the hardness of the softer body, False never does; None takes the
         scene's own choice, and without one the cap enters where pressures reach a given hardness
     tolerance : what every residual of the certificate must meet for status `CONVERGED`; by default
         1e-8 (with ``accuracy``, a share of it), and for "paper" its own load tolerance of 1e-4

@@ -71,7 +71,7 @@ def _along_first_axis(values: Array, count: int) -> Array:
 
 
 def _doubled(values: Array) -> Array:
-    """Return two rows in one: a weighted sum at general places, to the last bit, in half its time."""
+    """Return two rows for each: a weighted sum at general places, to the last bit, in half its time."""
     n, m = values.shape
     found = np.empty((2 * n, m), order="C" if values.flags.c_contiguous else "F")
     found[0], found[-1] = values[0], values[-1]

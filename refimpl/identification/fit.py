@@ -207,7 +207,7 @@ def _deleted(weights: Array, hat: Array, misfit: Array) -> Array:
 
 
 def _bounded(design: Array, wanted: Array, free: Array, scale: Array) -> Array:
-    """Return the least squares with tau and beta not negative and with the longest step of further
+    """Return the least-squares solution with tau and beta not negative and with the longest step of further
     parameters.
 
     All in units of ``scale``; ``free`` is the minimum without bounds.

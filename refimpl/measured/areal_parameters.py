@@ -77,7 +77,7 @@ def squared(transform: NDArray[np.complex128]) -> Array:
 
 
 def _mean_square(values: Array) -> float:
-    """Return NaN where nothing was measured: a map may have no two neighbours."""
+    """Return the mean square; NaN where nothing was measured: a map may have no two neighbours."""
     known = values[np.isfinite(values)]
     return float(np.mean(known**2)) if known.size else math.nan
 

@@ -147,7 +147,7 @@ def fit(x: Array, y: Array, z: Array, degree: int) -> Polynomial:
 
 
 def _fit_curved(x: Array, y: Array, z: Array, level: str, pixel: tuple[float, float]) -> Curved:
-    """Return the least squares along z over height, slopes, curvature (and axis), from the paraboloid's
+    """Return the least-squares form along z over height, slopes, curvature (and axis), from the paraboloid's
     values."""
     thin = max(1, math.ceil(math.sqrt(z.size / _FITTED)))
     at_x, at_y, part = x[::thin], y[::thin], z[::thin, ::thin]

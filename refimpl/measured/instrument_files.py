@@ -51,7 +51,7 @@ def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
             return read_as(library, path, name, given, *rewritten(path, name, given))
         except InputError:
             raise
-        except Exception as error:
+        except Exception as error:  # other people's parsers raise anything; the next format may fit
             failures.append(f"{name}: {first_line(error)}")
     if kind := kind_of(path, head):
         raise InputError("path", str(path), kind)

@@ -197,12 +197,16 @@ class Problem:
         return weights, offset
 
     def largest_load(self, slopes: Slopes) -> float:
-        """Return what elements at the hardness carry at most on given slopes (N); infinite without a cap."""
+        """Return what pressures up to the hardness carry at most on given slopes (N); infinite without a cap.
+
+        Elements whose shear drags down more than their pressure carries count as without pressure.
+        """
         if math.isinf(self.cap):
             return math.inf
-        full = np.full(self.gap.shape, self.cap)
-        weights, offset = self.load_weights(slopes, self.friction.shear_offset(full, full > 0))
-        return float(np.sum(weights * full)) * self.grid.element_area - offset
+        f = np.full(self.gap.shape, self.cap)
+        r = self.friction.traction(f, f > 0)
+        each = (f * slopes.cos_x - r * slopes.sin_x) * slopes.cos_y
+        return float(np.maximum(each, 0.0).sum()) * self.grid.element_area
 
     def nominal_load(self, normal_force: float) -> float:
         """Return the load of Eq. (4): the prescribed one, or the normal force at a prescribed approach

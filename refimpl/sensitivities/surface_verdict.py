@@ -149,7 +149,7 @@ def pressed_on_a_flat(
     friction = friction or Friction()
     probe = Scene(upper, lower, friction, load=1.0)
     if pressure is None:
-        problem = discretise(probe, probe.grid(grid or probe.default_grid))
+        problem = discretise(probe, probe.grid(probe.default_grid if grid is None else grid))
         along_x, along_y = problem.grid.gradient(problem.heights[0])
         gradient = math.sqrt(float(np.mean(along_x**2 + along_y**2)))
         pressure = LIGHT * material.E / (1 - material.nu**2) * gradient

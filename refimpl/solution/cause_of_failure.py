@@ -20,15 +20,15 @@ def cause_of_failure(evidence: Evidence) -> str | None:
 
 
 def _hardness(evidence: Evidence) -> str | None:
-    """Return a load beyond what all elements at the hardness carry on the slopes of the last state."""
+    """Describe a load beyond what pressures up to the hardness carry on the slopes of the last state."""
     most = evidence.problem.largest_load(evidence.state.slopes)
     if evidence.problem.load is None or evidence.problem.load <= most:
         return None
-    return f"at the hardness everywhere the contact carries {most:.6g} N at most on its slopes"
+    return f"at the hardness everywhere the contact carries {most:.6g} N at most on the slopes of this state"
 
 
 def _pressure(evidence: Evidence) -> str | None:
-    """Return a mean pressure beyond the modulus."""
+    """Describe a mean pressure beyond the modulus."""
     problem, modulus = evidence.problem, evidence.scene.materials.reduced_modulus
     if problem.load is None or problem.load <= modulus * problem.grid.nominal_area:
         return None
@@ -37,7 +37,7 @@ def _pressure(evidence: Evidence) -> str | None:
 
 
 def _coupling(evidence: Evidence) -> str | None:
-    """Return a coupling stronger than what the production solver's updates reduce."""
+    """Describe a coupling stronger than what the production solver's updates reduce."""
     problem = evidence.problem
     strength = abs(problem.friction.slope * problem.elasticity.coupling_ratio)
     if evidence.plan.method == "dense" or strength <= _STRONG_COUPLING:
@@ -46,7 +46,7 @@ def _coupling(evidence: Evidence) -> str | None:
 
 
 def _tilt(evidence: Evidence) -> str | None:
-    """Return the adhesive shear that carries more than the load on the slopes that it makes by itself."""
+    """Describe the adhesive shear that carries more than the load on the slopes that it makes by itself."""
     problem, state = evidence.problem, evidence.state
     if problem.load is None:
         return None
@@ -58,7 +58,7 @@ def _tilt(evidence: Evidence) -> str | None:
 
 
 def _excluded(evidence: Evidence) -> str | None:
-    """Return an active set of tau that is less than half of the contact."""
+    """Describe an active set of tau that is less than half of the contact."""
     excluded, contact = (np.count_nonzero(x) for x in (evidence.state.excluded, evidence.state.contact))
     if 2 * excluded <= contact:
         return None

@@ -231,7 +231,7 @@ class _Scheme:
         return inner(weights, self.pressure) * problem.grid.element_area - offset
 
     def _update(self, approach: float, active: ActiveSet) -> tuple[Array, Array]:
-        """Return the slopes; returned are all displacements but ``a f`` (m), and the shear offset (Pa)."""
+        """Update the slopes; return all displacements but ``a f`` (m), and the shear offset (Pa)."""
         law, normal = self.problem.friction, self._apply(self.pressure)
         v = self.slopes.per_cosine_product(normal + self._shear) + self.problem.gap
         self._clearance = v - approach

@@ -90,7 +90,7 @@ def _solved(kind: str, seed: int) -> dict[str, Any]:
 
 
 def _records(path: Path) -> Iterator[dict[str, Any]]:
-    """Yield the lines of a file; a last one cut short by a kill is skipped."""
+    """Yield the lines of a file; one cut short by a kill is skipped."""
     if not path.exists():
         return
     for line in path.read_text(encoding="utf-8").splitlines():
@@ -113,7 +113,7 @@ def solved(path: Path) -> list[Solved]:
 def pack(scenes: Iterable[Solved], path: Path) -> None:
     """Write scenes as the result file that is committed: features in columns, as short as errors allow.
 
-    Of four grids every second one is kept, and the reference.
+    Of more than three grids every second one is kept, and the reference.
     """
     rows = []
     for one in scenes:

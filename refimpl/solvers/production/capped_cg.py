@@ -205,7 +205,7 @@ class CappedCG(ProjectedCG):
             return
         if carried > 0 and 0 < target < self._cap * float(np.sum(self._K, where=free > 0)):
             filled = filled_up(free, self._K, target, self._cap) + self._cap * self.capped
-        elif target <= 0 and displace:
+        elif target <= 0 and displace:  # without displacements ``v`` is that of an earlier pressure
             filled = self._deepest_first()
         elif self.contact.any():
             filled = filled_up(self.pressure, self._K, self._target, self._cap)

@@ -193,7 +193,7 @@ class LevelSolver:
         return max(constants.REDUCTION * now, constants.MIXED_SHARE * tolerance)
 
     def _reduce(self, goal: float) -> float:
-        """Return the CG steps until the fixed problem's residual, returned, meets the goal or stagnates."""
+        """Take CG steps until the fixed problem's residual meets the goal or stagnates; return it."""
         residual = best = max(self.cg.residuals())
         since = 0
         while residual > goal and since < _patience(best) and self.cg_iterations < self._budget:

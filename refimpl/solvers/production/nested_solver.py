@@ -8,7 +8,6 @@ from refimpl.grid import Array, Mask, Window, inner, resampled
 from refimpl.model.certificate import State, certify, relative_gap
 from refimpl.model.problem import Problem
 from refimpl.model.state import SolverResult
-from refimpl.operating_system import return_free_memory
 from refimpl.operators.fft import Counter
 from refimpl.operators.influence import WindowInfluence, whole_grid_influence, window_influence
 from refimpl.operators.preconditioner import Apply, SpectralPreconditioner, extended
@@ -24,8 +23,6 @@ from refimpl.solvers.production.coarse_grids import (
 from refimpl.solvers.production.constants import MARGIN, START_MISFIT
 from refimpl.solvers.production.level import LevelSolver
 from refimpl.solvers.tau_active_set import first_set
-
-_LARGE = 2_000_000  # elements from which memory kept for the next solve counts more than its time
 
 
 def solve_fft(
@@ -54,8 +51,6 @@ def solve_fft(
         result, window = solver.result(tolerance), solver.window
         too_small, needs_mixing = solver.window_too_small, solver.needs_mixing
         del solver  # frees its memory before the arrays of the whole grid are made
-        if problem.gap.size >= _LARGE:
-            return_free_memory()
         needed = window.mask(problem.grid.shape)
         if not too_small:
             state = certified(problem, result, counter)

@@ -65,3 +65,7 @@ def test_a_sweep_solves_every_map_on_its_own_points(tmp_path: Path) -> None:
     table = {"scene": "scene.toml", "vary": {"lower.surface[0].path": ["coarse.txt", "fine.txt"]}}
     done = sweep(study_from_dict(table, tmp_path), tmp_path / "runs.sqlite", workers=1)
     assert [row["elements_x"] for row in done.rows] == [16, 32]
+
+
+def test_the_dense_method_takes_as_many_elements_as_it_may_by_default() -> None:
+    assert Options(scene=rf.read_scene("table1-smooth"), method="dense").grid == 64
