@@ -26,9 +26,11 @@ results: $(READY)
 	$(BIN)/python -m verification.output.result_files reports/results/*.json
 	$(BIN)/python -m reports.results_page
 
-# Ruff and mypy beside the tests.
+# Ruff and mypy beside the tests; the verdicts of both count.
 test: $(READY)
-	$(MAKE) --no-print-directory lint & $(BIN)/python -m pytest -n 2 --dist worksteal && wait $$!
+	@$(MAKE) --no-print-directory lint & lint=$$!; \
+	$(BIN)/python -m pytest -n 2 --dist worksteal; tests=$$?; \
+	wait $$lint && exit $$tests
 
 lint: $(READY)
 	$(BIN)/ruff check .

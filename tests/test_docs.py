@@ -9,10 +9,9 @@ from pathlib import Path
 import pytest
 
 from refimpl.solution.model_warning import Limit
-from tests.documents import ROOT, agree, blocks, commands, run
+from tests.documents import FENCE, ROOT, agree, blocks, commands, run
 
 DOCS = sorted((ROOT / "docs").glob("*.md"))
-
 
 LONG = {
     "notebooks", "read-the-report", "friction-with-an-error-bar", "reference-data", "measured-surfaces",
@@ -37,6 +36,13 @@ def test_a_page_is_true(path: Path, tmp_path: Path) -> None:
     stated = [b for b in blocks(page) if b.language == "text" and not b.file]
     shown = [s for b in blocks(page) if b.language == "console" for _, s in commands(b) if s.strip()]
     assert run(page, tmp_path) == len(stated) + len(shown)
+
+
+def test_the_solves_of_the_page_of_yield_are_true(tmp_path: Path) -> None:
+    """With and without the cap; its sweep of hardnesses takes longer, and `make nightly` runs it."""
+    page = (ROOT / "docs/yield.md").read_text(encoding="utf-8")
+    parts = [b[0] for b in FENCE.finditer(page) if b[2] or "solve steel.toml" in b[3]]
+    assert run("\n".join(parts), tmp_path) == 2
 
 
 @pytest.mark.parametrize("path", [*DOCS, ROOT / "README.md"], ids=lambda path: path.stem)

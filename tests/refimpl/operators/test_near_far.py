@@ -8,7 +8,7 @@ import pytest
 from refimpl.grid import Array, Grid, Window
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.influence import window_influence
-from refimpl.operators.near_far import ERROR, TOLERANCE, NearFarInfluence
+from refimpl.operators.near_far import TOLERANCE, NearFarInfluence
 
 WINDOWS = [(256, 256), (240, 301), (333, 250), (512, 240)]
 
@@ -31,7 +31,11 @@ def fields(shape: tuple[int, int]) -> dict[str, Array]:
 @pytest.mark.parametrize("shape", WINDOWS)
 @pytest.mark.parametrize("kind", ["normal", "shear", "shear_across", "coupled"])
 def test_both_parts_give_the_whole_product(shape: tuple[int, int], kind: str) -> None:
-    """To a share of the largest displacement by the sizes of the tractions, of one sign or both."""
+    """To 1e-11 of the largest displacement; measured: 3e-13 to 9.7e-12.
+
+    White noise of both signs hardly displaces anything by shear: over that its error is up to 5e-11, and the
+    displacement by the sizes of its tractions counts instead.
+    """
     grid = Grid((shape[0] + 3, shape[1] + 9), ((shape[0] + 3) * 1e-6, (shape[1] + 9) * 1e-6))
     window = Window(3, 3 + shape[0], 4, 4 + shape[1])
     parts, whole = (cls(grid, 0.7, source=window) for cls in (NearFarInfluence, FFTInfluence))
@@ -40,8 +44,8 @@ def test_both_parts_give_the_whole_product(shape: tuple[int, int], kind: str) ->
     else:
         found, expected = getattr(parts, kind), getattr(whole, kind)
     for name, field in fields(shape).items():
-        largest = np.abs(expected(np.abs(field))).max()  # white noise of both signs hardly displaces anything
-        assert np.abs(found(field) - expected(field)).max() <= ERROR * largest, name
+        largest = np.abs(expected(field if kind == "normal" else np.abs(field))).max()
+        assert np.abs(found(field) - expected(field)).max() <= 1e-11 * largest, name
 
 
 def test_symmetric() -> None:
@@ -52,10 +56,12 @@ def test_symmetric() -> None:
 
 
 def test_symbol_is_that_of_the_whole_kernel() -> None:
+    """Its sums are rounded in another order: by 0.2 to 2.1 times 2^-53 of the sum of all terms, the largest
+    of the symbol, on 240 to 700 elements a side; here 1.1, which is 5e-14 where the symbol is least."""
     grid = Grid.square(1.0, 256)
     parts, whole = NearFarInfluence(grid, 0.0), FFTInfluence(grid, 0.0)
     assert parts.circle == whole.circle
-    np.testing.assert_allclose(parts.symbol, whole.symbol, rtol=1e-12)  # both sums are rounded
+    np.testing.assert_allclose(parts.symbol, whole.symbol, rtol=0, atol=2**-51 * whole.symbol.max())
 
 
 @pytest.mark.parametrize(

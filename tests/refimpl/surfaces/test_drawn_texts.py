@@ -1,6 +1,6 @@
 """Sixty text files drawn from the product of strangers' habits, verdicts by rule before any was read.
 
-60 of 60 were as listed: 39 read right, 21 refused.
+All sixty were as listed. The seed was not chosen by its texts: of 20 seeds, 60 to 79, all 1200 are as listed.
 """
 
 from __future__ import annotations
@@ -11,22 +11,7 @@ from pathlib import Path
 import pytest
 
 from refimpl.measured.reading import ARRAY, IMAGE
-from tests.refimpl.surfaces.test_sixty_texts import (
-    BOTH,
-    KEYS,
-    POINTS,
-    UM,
-    UPWARD,
-    File,
-    X,
-    Y,
-    cells,
-    check,
-    framed,
-    image,
-    points,
-    text,
-)
+from tests.refimpl.surfaces import made_texts as made
 
 SEED = 69
 SEPARATORS = (",", ";", "\t", " ", ", ", "; ", "  ")
@@ -40,13 +25,18 @@ LABELS = (
     ("Largeur", "Hauteur", "Unités des valeurs"),
     ("Anchura", "Altura", "Unidades de valor"),
 )
-HEADERS = ("", "", "Sample 7\n", KEYS, "# by hand\n", "sized", *(KEYS[: 20 * k] + "\n" for k in (2, 5)))
+CUT_KEYS = [made.KEYS[: 20 * k] + "\n" for k in (2, 5)]
+HEADERS = ("", "", "Sample 7\n", made.KEYS, "# by hand\n", "sized", *CUT_KEYS)
 FOOTERS = ("",) * 6 + ("\n\n", "# end of data\n", "end of data\n", "Sq = 1.2\n")
 KINDS = ("map",) * 10 + ("points", "points with units", "frame", "counted") * 2 + ("two maps",)
 
 
-def drawn(number: int) -> File:
-    """One file; it is refused where two readings are possible or a word is unknown."""
+def drawn(number: int) -> made.File:
+    """One file; it is refused where two readings are possible or a word is unknown.
+
+    Draws that cannot be written are replaced: between blanks an empty entry by nan and an empty corner by 0,
+    sizes above points or a frame by nothing. Decimal commas between commas, all refused, are made rare.
+    """
     rng = random.Random(1000 * SEED + number)
     kind, separator, form = rng.choice(KINDS), rng.choice(SEPARATORS), rng.choice(FORMS)
     header, footer = rng.choice(HEADERS), rng.choice(FOOTERS)
@@ -57,18 +47,19 @@ def drawn(number: int) -> File:
         header = SIZED.format(*rng.choice(LABELS), m=mark) if sized else ""
     if missing == "" and separator.strip(" ") == "":
         missing = "nan"
-    given, verdict, note = BOTH, IMAGE if header.strip() else ARRAY, ""
+    given, verdict, note = made.BOTH, IMAGE if header.strip() else ARRAY, ""
     shape = "{:.2f}" if form == "thousands" else form
-    rows = image(missing, shape) if verdict == IMAGE else cells(form=shape, missing=missing)
+    rows = made.image(missing, shape) if verdict == IMAGE else made.cells(form=shape, missing=missing)
     if kind.startswith("points"):
-        rows, given, verdict = points(), UM, POINTS
+        rows, given, verdict = made.points(), made.UM, made.POINTS
         rng.shuffle(rows)
         if kind == "points with units":
-            rows, given = points(2e-3, 3e-3), {}
+            rows, given = made.points(2e-3, 3e-3), {}
             header = separator.join(("x [mm]", "y [mm]", "z [um]")) + "\n"
             note = "units mm, mm, um"
     elif kind == "frame":
-        rows, given, verdict = framed(rng.choice(("", "0", "y/x")), UPWARD, X, Y), UM, POINTS
+        rows = made.framed(rng.choice(("", "0", "y/x")), made.UPWARD, made.X, made.Y)
+        given, verdict = made.UM, made.POINTS
         if separator.strip(" ") == "":
             rows[0][0] = "0"
         note = "first row and column"
@@ -77,20 +68,25 @@ def drawn(number: int) -> File:
         note = "index column"
     if form == "thousands":
         rows = [[("1'" if mark == "," else "1,") + f"{k}20" for k, _ in enumerate(row)] for row in rows]
-    body = text(rows, separator, mark)
+    body = made.text(rows, separator, mark)
     body += f"\n{body}" if kind == "two maps" else ""
     two_ways = mark == "," and "," in separator
     refused = two_ways or form == "thousands" or missing in UNKNOWN or kind == "two maps"
     if refused or footer[:1] in ("e", "S"):
         verdict = "refused"
     name = f"{number}: {kind}, {separator!r}, {mark!r}, {form}, missing {missing!r}, below {footer!r}"
-    return File(f"{name}, above {header[:20]!r}", header + body + footer, verdict, given, note,
-                missing is not None)  # fmt: skip
+    content, hole = header + body + footer, missing is not None
+    return made.File(f"{name}, above {header[:20]!r}", content, verdict, given, note, hole)
 
 
 DRAWN = tuple(drawn(number) for number in range(60))
 
 
+def test_a_third_is_refused() -> None:
+    verdicts = [file.verdict == "refused" for file in DRAWN]
+    assert (verdicts.count(True), verdicts.count(False)) == (21, 39)
+
+
 @pytest.mark.parametrize("file", DRAWN, ids=[file.name for file in DRAWN])
-def test_a_drawn_text_is_read_right_or_refused(tmp_path: Path, file: File) -> None:
-    check(tmp_path / "map.txt", file)
+def test_a_drawn_text_is_read_right_or_refused(tmp_path: Path, file: made.File) -> None:
+    made.check(tmp_path / "map.txt", file)

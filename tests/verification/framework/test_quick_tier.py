@@ -1,7 +1,8 @@
-"""Every quick case: what `make report` would fail on, `make test` fails on."""
+"""Quick cases, judged as `make report` does: in `make test` all but `NIGHTLY`, which `make nightly` runs."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import groupby
 
 import pytest
@@ -11,23 +12,45 @@ from verification.framework import registry
 from verification.framework.case import Case, Status, Tier
 
 QUICK = registry.select(registry.load(), Tier.QUICK)
-BY_MODULE = {name: list(cases) for name, cases in groupby(QUICK, key=lambda case: case.module)}
-
-LONG = {
-    "beyond_yield": 16, "capped_sphere": 14, "scheme": 13, "wedge": 10, "accuracy": 7, "kernels": 7,
-    "cross_check": 6, "section8": 6, "slides": 5, "rectangles": 5, "capped": 4, "contact": 4,
-    "assumptions": 4, "tau_shares": 4, "fem_answer": 4, "fem3d": 3, "hertz": 3, "iterations": 3,
-    "pulled": 2, "errata": 2,
+NIGHTLY = {
+    "accuracy/pulled", "accuracy/stress-similarity", "accuracy/tau-shares",
+    "appendix-fem/confined", "appendix-fem/correction", "appendix-fem/first-order", "appendix-fem/remainder",
+    "appendix-wedge/double-precision", "appendix-wedge/enclosures", "appendix-wedge/faces",
+    "appendix-wedge/two-precisions",
+    "capped/dense-fft", "capped/sphere-areas", "capped/sphere-jackson-green", "capped/sphere-kogut-etsion",
+    "capped/sphere-rings",
+    "cross-check/approach", "cross-check/area", "cross-check/binormal", "cross-check/contact-sets",
+    "cross-check/friction", "cross-check/pressure",
+    "fem3d/flat", "fem3d/one-point",
+    "paper/convergence", "paper/own-tolerance", "paper/own-tolerance-friction", "paper/same-state",
+    "paper/tightened",
+    "rectangles/dense-numbers", "rectangles/dense-pressure", "rectangles/paper-scheme",
+    "reproduction/eq11-capped-bound", "reproduction/eq11-capped-estimate", "reproduction/eq11-capped-slopes",
+    "reproduction/fig10-anisotropy", "reproduction/fig10-elastic", "reproduction/fig6a", "reproduction/fig6b",
+    "reproduction/fig6c", "reproduction/fig8-exponential", "reproduction/fig8-rates",
+    "reproduction/fig8-threshold", "reproduction/fig9", "reproduction/section8-beta0",
+    "reproduction/section9-cause", "reproduction/steady-sliding", "reproduction/table3-capped",
 }  # fmt: skip
-"""Modules that `make nightly` and `make report` run, with their seconds; their subjects have other tests."""
+"""Cases of about a second of processor time and more, and those that share their solutions.
+
+Of such cases `make test` keeps: kernels to 50 digits, Hertz, the capped sphere, errata, errors over bars.
+"""
 
 
-def _marked(module: str, cases: list[Case]) -> ParameterSet:
-    name = module.rpartition(".")[2]
-    return pytest.param(cases, id=name, marks=[pytest.mark.nightly] if name in LONG else [])
+def _parts() -> Iterator[ParameterSet]:
+    for name, of_module in groupby(QUICK, key=lambda case: case.module.rpartition(".")[2]):
+        cases = list(of_module)
+        if short := [case for case in cases if case.id not in NIGHTLY]:
+            yield pytest.param(short, id=name)
+        if long := [case for case in cases if case.id in NIGHTLY]:
+            yield pytest.param(long, id=f"{name}, long", marks=pytest.mark.nightly)
 
 
-@pytest.mark.parametrize("cases", [_marked(module, cases) for module, cases in BY_MODULE.items()])
+def test_what_is_left_to_the_night_is_there() -> None:
+    assert NIGHTLY - {case.id for case in QUICK} == set()
+
+
+@pytest.mark.parametrize("cases", _parts())
 def test_the_cases_of_a_module_pass(cases: list[Case]) -> None:
     """In one process and in their order, for they share solutions; all of them, whichever fails."""
     results = [case.run() for case in cases]

@@ -8,6 +8,8 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +18,7 @@ import pytest
 from refimpl.errors import InputError
 from tests.verification.cli.children import Ended, finished, one_line
 from tests.verification.cli.commands import refused, shown
-from tests.verification.sweep.own_cluster import cluster
+from tests.verification.sweep.own_cluster import Cluster, cluster
 from verification.framework.threads import THREADS, limited_to_one_thread
 from verification.sweep import engine
 from verification.sweep.export import to_csv
@@ -77,8 +79,10 @@ def test_failed_runs_are_named_not_kept_and_tried_again(
     assert set(done.failures.values()) == {"ArithmeticError: no solution"}
     assert ([row["grid"] for row in done.rows], len(done.solve_seconds)) == ([12, 12], 2)
     assert [p.done + p.failed for p in seen] == [0, 1, 2, 3, 4]
-    assert (seen[-1].done, seen[-1].failed, seen[-1].total) == (2, 2, 4)
+    assert all(p.total == 4 for p in seen)
+    assert (seen[-1].done, seen[-1].failed) == (2, 2)
     assert (seen[0].seconds_left, seen[-1].seconds_left) == (None, 0.0)
+    assert all((p.seconds_left or 0.0) > 0.0 for p in seen[1:-1])
     monkeypatch.undo()
     mended = engine.sweep(small(), tmp_path / "s.sqlite", workers=0)
     assert (mended.found, mended.finished, mended.failures) == (2, 2, {})
@@ -187,18 +191,27 @@ def test_a_scheduler_that_is_not_there(address: str, tmp_path: Path, monkeypatch
     assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
 
 
+@contextmanager
+def swept_by(made: Cluster, folder: Path) -> Iterator[subprocess.Popen[str]]:
+    """The command with 400 runs on a cluster, two of them finished; ended in the end."""
+    (folder / "study.toml").write_text('scene = "table1-rough"\nrealisations = 400\n[vary]\ngrid = [12]\n')
+    code = "from verification.cli import main; raise SystemExit(main())"
+    tail = ["sweep", "study.toml", "--store", "s.sqlite", "--scheduler", made.address]
+    with subprocess.Popen(
+        [sys.executable, "-c", code, *tail], cwd=folder, text=True, stderr=subprocess.PIPE
+    ) as child:
+        deadline = time.monotonic() + 60
+        while finished(folder / "s.sqlite") < 2 and time.monotonic() < deadline:
+            time.sleep(0.02)
+        try:
+            yield child
+        finally:
+            child.kill()
+
+
 @pytest.mark.nightly
 def test_a_lost_scheduler_is_one_line_and_the_sweep_goes_on_later(tmp_path: Path) -> None:
-    (tmp_path / "study.toml").write_text('scene = "table1-rough"\nrealisations = 400\n[vary]\ngrid = [12]\n')
-    tail = ["sweep", "study.toml", "--store", "s.sqlite", "--scheduler"]
-    with cluster(tmp_path) as made:
-        code = "from verification.cli import main; raise SystemExit(main())"
-        child = subprocess.Popen(
-            [sys.executable, "-c", code, *tail, made.address], cwd=tmp_path, text=True, stderr=subprocess.PIPE
-        )
-        deadline = time.monotonic() + 60
-        while finished(tmp_path / "s.sqlite") < 2 and time.monotonic() < deadline:
-            time.sleep(0.02)
+    with cluster(tmp_path) as made, swept_by(made, tmp_path) as child:
         made.scheduler.kill()
         _, err = child.communicate(timeout=120)
     one_line(Ended(child.returncode, err), "the scheduler")
@@ -206,6 +219,22 @@ def test_a_lost_scheduler_is_one_line_and_the_sweep_goes_on_later(tmp_path: Path
     assert 2 <= kept < 400
     again = engine.sweep(small(kept, (12,)), tmp_path / "s.sqlite", workers=0)
     assert (again.found, len(again.rows)) == (kept, kept)
+
+
+@pytest.mark.nightly
+def test_a_cluster_that_has_lost_its_last_worker_is_waited_for(tmp_path: Path) -> None:
+    with cluster(tmp_path) as made, swept_by(made, tmp_path) as child:
+        made.worker.kill()
+        made.worker.wait()
+        time.sleep(2)  # what it had sent is stored
+        kept = finished(tmp_path / "s.sqlite")
+        with pytest.raises(subprocess.TimeoutExpired):
+            child.wait(timeout=5)
+        assert 2 <= finished(tmp_path / "s.sqlite") == kept < 400
+        made.another()
+        _, err = child.communicate(timeout=120)
+    assert (child.returncode, err) == (0, "")
+    assert finished(tmp_path / "s.sqlite") == 400
 
 
 LIMITED = """

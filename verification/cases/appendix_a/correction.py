@@ -100,8 +100,8 @@ def numbers(found: rf.Solution) -> Array:
 
 
 def change(found: rf.Solution, plain: rf.Solution) -> Array:
-    """Return percent by which mu, A and f_max changed; that of Q, which may be nil, is of the friction
-    force."""
+    """Return the percentages by which mu, A and f_max changed; that of Q, which may be nil, is of the
+    friction force."""
     base = numbers(plain)
     scale = np.array([*base[:3], plain.friction_force])
     percent: Array = 100 * (numbers(found) - base) / scale

@@ -61,7 +61,7 @@ class _Dice:
         return math.exp(self.rng.uniform(math.log(low), math.log(high)))
 
     def friction(self, pressure: float) -> rf.Friction:
-        """Return tau, and in half of the scenes beta."""
+        """Draw a friction law: tau, and in half of the scenes beta as well."""
         beta = 0.0 if self.rng.random() < 0.5 else self.log(0.05, 0.4)
         return rf.Friction(tau=pressure * self.log(0.05, 0.8), beta=beta)
 
