@@ -92,10 +92,11 @@ def require_number(
     at_least: float | None = None,
     below: float | None = None,
     at_most: float | None = None,
-) -> None:
-    """Raise `InputError` unless ``value`` is a finite real number within the bounds.
+) -> float:
+    """Return ``value`` as a double; raise `InputError` unless it is a finite real number within the bounds.
 
     >>> require_number("nu", 0.3, "a ratio", above=-1, at_most=0.5)
+    0.3
     """
     if not isinstance(value, bool) and isinstance(value, numbers.Real):
         number = as_double(value)
@@ -106,7 +107,7 @@ def require_number(
             and (below is None or number < below)
             and (at_most is None or number <= at_most)
         ):
-            return
+            return number
     raise InputError(field, value, allowed)
 
 
@@ -126,15 +127,15 @@ def keep_doubles(parameters: object, *names: str) -> None:
             object.__setattr__(parameters, name, float(value))
 
 
-def require_size(field: str, value: object, allowed: str) -> None:
-    """Raise `InputError` unless ``value`` is a positive size in SI units that arithmetic can bear.
+def require_size(field: str, value: object, allowed: str) -> float:
+    """Return ``value`` as a double; raise `InputError` unless it is a positive size that arithmetic can bear.
 
     >>> require_size("side", 1e-200, "a positive length in m")
     Traceback (most recent call last):
     ...
     refimpl.errors.InputError: side = 1e-200: expected a positive length in m, 1e-30 to 1e+30
     """
-    require_number(field, value, f"{allowed}, {LEAST} to {MOST}", at_least=LEAST, at_most=MOST)
+    return require_number(field, value, f"{allowed}, {LEAST} to {MOST}", at_least=LEAST, at_most=MOST)
 
 
 def require_one_of(field: str, value: object, allowed: Iterable[str]) -> None:

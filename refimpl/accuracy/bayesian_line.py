@@ -129,7 +129,6 @@ def _bound(shares: Array, centres: Array, scales: Array, freedom: float) -> floa
 
 @cache
 def _factors(mean: float, spread: float) -> tuple[Array, Array]:
-    """Return the nodes and weights of ``c``'s prior: Gauss-Hermite; nine give nine bars in ten to 1.5 % (a
-    test)."""
+    """Return nodes and weights of ``c``'s prior; nine give nine bars in ten to 1.5 % (a test)."""
     nodes, weights = np.polynomial.hermite_e.hermegauss(9)
     return mean + spread * nodes, weights / weights.sum()

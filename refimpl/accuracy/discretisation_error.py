@@ -114,11 +114,9 @@ class _Grids:
         self.spacing = self.each(lambda result: result.grid.element_size)
 
     def each(self, number: Callable[[GridFeatures], float]) -> Array:
-        """Return one feature of each grid."""
         return np.array([number(result) for result in self.results])
 
     def found(self, name: str) -> Array:
-        """Return one reported number of each grid."""
         return self.each(lambda result: result.numbers[name])
 
     def finest(self, name: str) -> float:
@@ -134,8 +132,7 @@ class _Grids:
     def smooth(
         self, values: Array, freedom: float, scales: Array, sizes: Array, bias: Bias | None = None
     ) -> Estimate:
-        """Estimate from ``values`` that scatter by the root of the sum of squared ``scales`` times
-        ``sizes`` (parts, grids)."""
+        """Estimate from values that scatter by the root sum of squares of ``scales`` times ``sizes``."""
         size = np.hypot.reduce(scales[:, None] * sizes)
         if math.isinf(size[-1]):
             return Estimate(float(values[-1]), math.inf)
@@ -240,8 +237,7 @@ def _force(grids: _Grids) -> Estimate:
 
 
 def _weights(size: Array, spacing: Array) -> Array:
-    """Return ``w_k``: each grid's size of the scatter over the finest grid's, and not less than a finer
-    grid's.
+    """Return ``w_k``: each grid's scatter over the finest grid's, and not less than a finer grid's.
 
     So a number that keeps changing with ever finer elements is not taken as converged. Where the finest grid
     has no scatter, the weights are those of an area.
@@ -254,8 +250,7 @@ def _weights(size: Array, spacing: Array) -> Array:
 
 
 def discretisation(results: Sequence[GridFeatures]) -> dict[str, dict[str, float]]:
-    """Return the discretisation parts of the finest grid's numbers: none without contact, infinite where it
-    diverged."""
+    """Return the parts of the finest grid's numbers: none without contact, infinite where it diverged."""
     found = results[-1].numbers
     if not results[-1].touching:
         return {}

@@ -28,8 +28,7 @@ HERTZ_EXPONENTS = {
 
 
 def at_first_contact(features: GridFeatures) -> GridFeatures:
-    """Return features at a prescribed approach, corrected by how far the grid's first contact lies too
-    low."""
+    """Return features at a prescribed approach, corrected for a first contact that lies too low."""
     approach = features.numbers["approach"]
     indentation = approach + features.first_contact.height
     if features.loaded or indentation == 0 or not features.numbers["normal_force"] > 0:

@@ -21,9 +21,7 @@ from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 
-EXCESS = np.array(
-    [*table("face_excess").ravel(), constant("straight_excess"), constant("border_excess")]
-)
+EXCESS = np.array([*table("face_excess").ravel(), constant("straight_excess"), constant("border_excess")])
 """Elements by which a counted area exceeds, of each of `GridFeatures.excess_terms`."""
 _LEVELS = 16  # pressures in `highest_areas`
 _TROUGH_ERROR = constant("trough_error")
@@ -121,8 +119,7 @@ class GridFeatures:
 
     @property
     def excess_terms(self) -> Array:
-        """Numbers that the mean excess is made of: faces by kind, faces beyond the second of a run along an
-        axis, elements at which a free border cuts the contact off."""
+        """Faces by kind, faces beyond the second of a run along an axis, elements at a free border."""
         area = self.numbers["contact_area"]
         border = self.border_fraction * area * (1 - area / self.grid.nominal_area) / self.grid.element_area
         return np.array([*self.faces, self.straight.faces, border])
@@ -269,8 +266,7 @@ def hidden_gap(problem: Problem, state: State) -> float:
 
 
 def _undecided(pressure: Array, grid: Grid) -> Array:
-    """Return the pressures of the elements of `undecided_area` and their neighbours along x and y, shape
-    ``(5, n)``."""
+    """Return the pressures ``(5, n)`` of elements of `undecided_area` and their neighbours along x and y."""
     p = grid.padded(pressure[grid.window_around(pressure > 0, margin=1).slices], 1)
     five = p[1:-1, 1:-1], p[2:, 1:-1], p[:-2, 1:-1], p[1:-1, 2:], p[1:-1, :-2]
     amid = np.logical_and.reduce([field > 0 for field in five])

@@ -113,8 +113,7 @@ def _peak_misfit(problem: Problem, state: State) -> float:
 
 
 def active_set_parts(problem: Problem, state: State) -> Uncertainty:
-    """Return the parts of elements that violate the law: without adhesive shear they are in contact, with it
-    they would not be.
+    """Return the parts of elements that violate the law: in contact only without adhesive shear.
 
     A law that turns tau on with pressure, however soon, leaves such elements a share of it (the case
     ``tau/shares``): mu is uncertain by all of tau on them, the area by the elements.

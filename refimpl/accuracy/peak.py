@@ -149,8 +149,7 @@ def _peak(padded: Array, contact: Mask, least: float) -> Peak:
 
 
 def _maxima(padded: Array, frame: int, least: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return the places in a field with a frame of elements: at least ``least``, and no lower than those
-    beside."""
+    """Return the places in a framed field: at least ``least``, and no lower than those beside."""
     inner, back, ahead = slice(frame, -frame), slice(frame - 1, -frame - 1), slice(frame + 1, 1 - frame)
     field = padded[inner, inner]
     maxima: Mask = field >= least
@@ -161,15 +160,13 @@ def _maxima(padded: Array, frame: int, least: float) -> tuple[NDArray[np.intp], 
 
 
 def _lines(padded: Array, i: NDArray[np.intp], j: NDArray[np.intp], reach: int) -> Array:
-    """Return the elements to ``reach`` on either side of each place, along x and y: shape ``(2, 2 reach + 1,
-    n)``."""
+    """Return the elements to ``reach`` about each place, along x and y: ``(2, 2 reach + 1, n)``."""
     near = np.arange(-reach, reach + 1)[:, None]
     return np.array([padded[i + near, j], padded[i, j + near]])
 
 
 def _parabolas(lines: Array) -> tuple[Array, Array, Array]:
-    """Return the height, drop and non-parabolicity of each place with ``lines`` (2, 5, n) about it, a maximum
-    along both."""
+    """Return the height, drop and non-parabolicity of maxima with ``lines`` (2, 5, n) about them."""
     farther_back, back, top, ahead, farther = lines.swapaxes(0, 1)
     bends, rise = 2 * top - back - ahead, ahead - back
     gains = np.zeros_like(bends)

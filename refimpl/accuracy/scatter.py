@@ -95,8 +95,7 @@ def gap_scatter(result: GridFeatures) -> float:
 
 
 def plastic_sizes(fine: GridFeatures) -> Array:
-    """Return sizes of the scatter of the area at the hardness (m^2): a count of its edge elements, its
-    straight edges, and the excess of single elements."""
+    """Return sizes of the plastic area's scatter (m^2): edge, straight edges, single elements' excess."""
     area, dA = fine.numbers.get("plastic_area", 0.0), fine.grid.element_area
     edge = max(fine.plastic_edge, 0.0)
     counted = math.sqrt(edge / EDGE_SHARE * dA * fine.symmetry_multiplicity)

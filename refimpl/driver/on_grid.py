@@ -97,7 +97,6 @@ class _ReportingCounter(Counter):
         self._grid, self._report = grid, report
 
     def add(self, what: str, points: int) -> None:
-        """Count an application, and report the number so far."""
         super().add(what, points)
         self._report(f"{self._grid} elements, {sum(self.tally.values())} transforms")
 

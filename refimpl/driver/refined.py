@@ -39,8 +39,7 @@ _CONVERGED = (Status.CONVERGED, Status.CYCLED)
 
 
 def refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Progress | None) -> Solution:
-    """Return the finest grid's solution of a refinement, with the uncertainty from all grids and the summed
-    cost.
+    """Return the finest grid's solution of a refinement, with the bars and the cost of all grids.
 
     When finer grids do not fit into memory, or exceed the largest size, the finest solved is returned as
     `ACCURACY_NOT_REACHED` with a warning that states the accuracy reached.
@@ -66,7 +65,6 @@ def refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Pr
 
 
 def _interrupted(solved: Evidence, cost: Cost) -> Solution:
-    """Return the last finished grid's solution of a refinement that was interrupted."""
     line = Notice("interrupted: the finest grid that was finished")
     return assemble(solved, shortfall=line, cost=cost)
 
@@ -124,8 +122,7 @@ class _Refinement:
         self.data = DataShares(cache(self._data_left), finest_by_data(self.scene))
 
     def _data_left(self, M: int) -> float:
-        """Return the share of the contact area that the data leave open on M elements along the longer
-        side."""
+        """Return the share of the area that the data leave open on M elements along the longer side."""
         return data_error(self.scene, self.scene.refined(M))
 
     def until(self, features_at: Callable[[int], GridFeatures]) -> Refinement:

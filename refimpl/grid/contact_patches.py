@@ -61,7 +61,6 @@ def patch_centres(labels: NDArray[np.intp], f: Array, along: Array, length: floa
 
 
 def _across(labels: NDArray[np.integer]) -> NDArray[np.integer]:
-    """Return the pairs of patches in the first and the last row that touch where these meet, shape ``(2,
-    n)``."""
+    """Return the pairs of patches ``(2, n)`` that touch where the first and the last row meet."""
     pairs = np.concatenate([[labels[0], np.roll(labels[-1], k)] for k in (-1, 0, 1)], axis=1)
     return pairs[:, pairs.all(axis=0)]

@@ -134,8 +134,7 @@ class Grid:
 
     @property
     def transform_shape(self) -> tuple[int, int]:
-        """Shape of a Fourier transform of this grid's fields: a free grid has an empty margin of its own
-        size."""
+        """Shape of a field's Fourier transform: a free grid has an empty margin of its own size."""
         scale = 1 if self.periodic else 2
         return scale * self.shape[0], scale * self.shape[1]
 

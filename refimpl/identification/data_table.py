@@ -229,8 +229,7 @@ def _refuse_mixed_loads(rows: Sequence[Row]) -> None:
 
 
 def _refuse_swapped(rows: Sequence[Row]) -> None:
-    """Refuse friction that falls with the load, and mu that rises with it: no law with tau and beta has
-    them."""
+    """Refuse friction that falls with the load, and mu that rises with it: no law has them."""
     known = [row for row in rows if row.mu > 3 * row.u_mu]
     if not known:
         return

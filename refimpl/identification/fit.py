@@ -119,8 +119,7 @@ def data_covariance(rows: Sequence[Row], responses: Sequence[Response], between:
 
 
 def _bars(responses: Sequence[Response]) -> dict[str, Array]:
-    """Return the covariances of the model: rows share the factor of the mean excess, all else is each row's
-    own."""
+    """Return the model's covariances: rows share the factor of the mean excess alone."""
     bars, shared, edge = (
         np.array([getattr(r, name) for r in responses]) / COVERAGE
         for name in ("numerical", "shared", "contact_edge")
@@ -195,8 +194,7 @@ def _linear_fit(
 
 
 def _deleted(weights: Array, hat: Array, misfit: Array) -> Array:
-    """Return the residual of each row from the fit to the others, in standard uncertainties (Cook and
-    Weisberg 1982).
+    """Return each row's residual from the fit to the others, over its deviation (Cook, Weisberg 1982).
 
     Rows are correlated, so it is ``(W e)_i / sqrt((W - W X G)_ii)``, without bounds; 0 for a row that a
     parameter rests on.
@@ -207,8 +205,7 @@ def _deleted(weights: Array, hat: Array, misfit: Array) -> Array:
 
 
 def _bounded(design: Array, wanted: Array, free: Array, scale: Array) -> Array:
-    """Return the least-squares solution with tau and beta not negative and with the longest step of further
-    parameters.
+    """Return the least-squares solution within the bounds: tau, beta >= 0, and the longest step.
 
     All in units of ``scale``; ``free`` is the minimum without bounds.
     """

@@ -119,8 +119,7 @@ def response_from_dict(stored: Mapping[str, Any]) -> Response:
 
 
 def least_parameters(scene: Scene) -> tuple[float, float]:
-    """Return the least parameters that are solved for (Pa, 1): too small to matter, large enough to
-    differentiate."""
+    """Return the least parameters that are solved for (Pa, 1): they do not matter, and have slopes."""
     return _FLOOR * 1e-4 * scene.materials.reduced_modulus, _FLOOR * 1e-2
 
 
@@ -164,8 +163,7 @@ def _response(
 
 
 def _log_slope(scene: Scene, solution: Solution, name: str) -> float:
-    """Return ``d mu / d ln p`` by two solves: areas, and with them friction, are counted
-    (`grid_sensitivity`)."""
+    """Return ``d mu / d ln p`` by two solves: areas are counted (`grid_sensitivity`)."""
     value = parameters(scene)[name]
     return value * difference_quotients(scene, solution, name, value)[0]["friction_coefficient_corrected"]
 

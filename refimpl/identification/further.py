@@ -31,7 +31,6 @@ def further_parameters(scene: Scene, names: Sequence[str]) -> tuple[str, ...]:
 
 
 def _whole(scene: Scene, name: str) -> str:
-    """Return the name of one parameter of the scene."""
     softest = scene.materials.softer_hardness
     hardnesses = [
         f"{body}.material.hardness"

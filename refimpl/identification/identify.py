@@ -95,7 +95,6 @@ def _result(
     profile: Profile | VaryingProfile,
     further: Sequence[str],
 ) -> Identification:
-    """Return the result of a fit and its covariance by source, without a further solve."""
     covariance = np.asarray(sum(parts.values()))
     values = _values(fitted, profile, further)
     units = np.array([1.0, 1.0, *(values[name].value for name in further)])
@@ -129,8 +128,7 @@ def _predictions(
     profile: Profile | VaryingProfile,
     realisations: int,
 ) -> tuple[Prediction, ...]:
-    """Return the predictions at the loads of all rows, whose responses the fit has, and at further ones
-    (N)."""
+    """Return predictions at the loads of all rows, solved by the fit, and at further ones (N)."""
     theta = result.fitted.theta
     new = [mean_response(draws(forward, replace(scene, load=load), theta, realisations)) for load in loads]
     responses, at = (*result.fitted.responses, *new), (*(row.load for row in rows), *loads)
@@ -142,7 +140,6 @@ def _predictions(
 def _fitted(
     scene: Scene, rows: Sequence[Row], forward: Forward, realisations: int, tolerances: Mapping[str, float]
 ) -> tuple[Fit, dict[str, Array]]:
-    """Return the fit, and the covariance by source."""
     logarithms = [math.log(parameters(scene)[name]) for name in forward.further]
     start, scenes = np.concatenate([_start(scene, rows), logarithms]), [row.of(scene) for row in rows]
     try:
@@ -243,8 +240,7 @@ def _best_factor(covariance: Array, mean: Array) -> float:
 def _prediction(
     load: float, response: Response, theta: Array, profile: Profile | VaryingProfile
 ) -> Prediction:
-    """Return the interval of mu: parameters by their likelihood, bars and scatter of mu at this load, in
-    squares."""
+    """Return the interval of mu: parameters by their likelihood, bars and scatter added in squares."""
     mu = response.predict(theta)
     slopes = np.array(response.slopes)
     slopes[: len(NAMES)] = np.maximum(slopes[: len(NAMES)], 0.0)

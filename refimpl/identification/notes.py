@@ -37,8 +37,7 @@ def notes(result: Identification) -> tuple[str, ...]:
 
 
 def _scale(responses: Sequence[Response]) -> Iterator[str]:
-    """Yield warnings of loads out of the scene's scale. Friction alone shows no unit: A/P of a ball is a
-    power of P."""
+    """Yield warnings of loads out of the scene's scale: A/P of a ball, a power of P, shows no unit."""
     most = max(response.contact_fraction for response in responses)
     if most < _LEAST:
         yield (

@@ -101,8 +101,7 @@ class Profile:
                 yield free, theta, covariance
 
     def _optimum(self) -> Array:
-        """Return the optimum within the bounds: inside, or on one of their faces, the last of which has no
-        bound."""
+        """Return the optimum within the bounds: inside, or on one of their faces."""
         inside = [theta for _, theta, _ in self._faces() if np.all(theta[:BOUNDED] >= 0)]
         return np.asarray(min(inside, key=self._misfit) * self.scale)
 
@@ -145,5 +144,4 @@ class Profile:
         return any(self.centre[j] < self.quantile(axis) for j, axis in enumerate(self._axes()))
 
     def _axes(self) -> Array:
-        """Return the unit vectors of the bounded parameters."""
         return np.eye(len(self.centre))[:BOUNDED]

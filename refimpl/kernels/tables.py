@@ -26,8 +26,7 @@ _SLAB = 16384  # evaluations: 128 kB per temporary
 
 
 def normal_table(n: int, m: int, dx: float, dy: float | None = None, *, known: Array | None = None) -> Array:
-    """Return ``normal_integral(i dx, j dy, dx, dy)`` for ``i < n``, ``j < m``: shape ``(n, m)``, unit of
-    ``dx``.
+    """Return ``normal_integral(i dx, j dy, dx, dy)`` for ``i < n``, ``j < m``, in the unit of ``dx``.
 
     ``dy = dx`` by default; ``known`` is a smaller table of the same elements, to start from: the result is
     the same to the last bit. Extend evenly to negative offsets. Same accuracy and errors as
@@ -52,8 +51,7 @@ def normal_table(n: int, m: int, dx: float, dy: float | None = None, *, known: A
 def tangential_table(
     n: int, m: int, dx: float, dy: float | None = None, *, known: Array | None = None
 ) -> Array:
-    """Return ``tangential_integral(i dx, j dy, dx, dy)`` for ``i < n``, ``j < m``: shape ``(n, m)``, unit of
-    ``dx``.
+    """Return ``tangential_integral(i dx, j dy, dx, dy)`` for ``i < n``, ``j < m``, in the unit of ``dx``.
 
     ``dy = dx`` by default; ``known`` as for `normal_table`. Extend oddly in x, evenly in y. Same accuracy
     and errors as ``tangential_integral``.
@@ -103,8 +101,7 @@ def _symmetric_table(kernel: Kernel, n: int, m: int, edge: float, known: Array |
 
 
 def _begun(kernel: Kernel, n: int, m: int, dx: float, dy: float, known: Array | None) -> tuple[Array, int]:
-    """Return a table of NaN (so that no gap between slabs goes unseen) with its first corner, and that one's
-    size.
+    """Return a table of NaN, so that no gap goes unseen, with its first corner, and that one's size.
 
     The corner is what is known, or as much as the closed form serves.
     """

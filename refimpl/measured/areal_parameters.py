@@ -35,8 +35,7 @@ def height_parameters(z: Array) -> dict[str, float]:
 
 
 def developed_area(z: Array, pixel: Pixel) -> float:
-    """Return Sdr: surface over its projection, less one; the mean of both ways to cut a cell into
-    triangles."""
+    """Return Sdr: surface over projection, less one; the mean of both ways to cut cells in triangles."""
     along, across = np.diff(z, axis=0) / pixel[0], np.diff(z, axis=1) / pixel[1]
     ends = slice(1, None), slice(None, -1)
     corners = [np.hypot(along[:, j], across[i]) for i in ends for j in ends]
@@ -51,8 +50,7 @@ def mean_square_slopes(z: Array, pixel: Pixel) -> Pixel:
 
 
 def implausible_slope(z: Array, pixel: Pixel) -> tuple[str, ...]:
-    """Return a note on an rms slope that a wrong unit of heights or pixel would make, of a map that is not
-    flat."""
+    """Return a note on an rms slope that a wrong unit of heights or pixel would make."""
     slope = math.sqrt(sum(mean_square_slopes(z, pixel)))
     if slope == 0 or not math.isfinite(slope) or SLOPES[0] <= slope <= SLOPES[1]:
         return ()
@@ -117,8 +115,7 @@ class Autocorrelation:
         return x, y
 
     def distances(self, level: float) -> Array:
-        """Return the distance (m) at which the autocorrelation first falls to ``level``, in each of
-        DIRECTIONS.
+        """Return the distance (m) of the first fall to ``level``, in each of DIRECTIONS.
 
         Direction k is at k pi / DIRECTIONS to x. NaN where it does not fall so far within the lags.
         """
@@ -141,8 +138,7 @@ class Autocorrelation:
         return np.where(below.any(axis=1) & known, found, np.nan)
 
     def ellipse(self, above: float = 0.4) -> tuple[float, float, float]:
-        """Return the half-axes (m) at which ``exp(-r^2)`` falls to 1/e, and the angle (rad) of the longer one
-        to x.
+        """Return half-axes (m) at which ``exp(-r^2)`` is 1/e, and the longer one's angle to x (rad).
 
         ``-ln`` of the autocorrelation is fitted by a quadratic form at the lags around zero at which the
         autocorrelation exceeds ``above``, with its square as weights.

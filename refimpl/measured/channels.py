@@ -19,8 +19,7 @@ NAMES_SHOWN, NAME_SHOWN = 20, 40  # channels in a message, and characters of eac
 
 
 def choose(path: Path, form: str, reader: Any, given: Overrides) -> tuple[int, Any]:
-    """Return the channel of the given name or number, by default the first map of heights from the library's
-    own.
+    """Return the channel of the given name or number, by default the library's first map of heights.
 
     Of several arrays it is the only one that is named as heights are. Raises InputError with all there are.
     """
@@ -43,8 +42,7 @@ def choose(path: Path, form: str, reader: Any, given: Overrides) -> tuple[int, A
 
 
 def chosen(path: Path, names: list[str], channel: str | int | None) -> int:
-    """Return the index of the channel of a name or number; None: the only one. Raises InputError with all
-    there are."""
+    """Return the index of the channel of a name or number; None: the only one. Raises `InputError`."""
     if channel is None and len(names) != 1:
         raise InputError("channel", None, f"the one that is heights in {path.name}: {_listed(names)}")
     if isinstance(channel, str):
@@ -64,8 +62,7 @@ def _listed(names: list[str]) -> str:
 
 
 def _maps(channels: list[Any], reader: Any, arrays: bool) -> list[int]:
-    """Return the maps of heights, from the library's own on; of several arrays those that are named as
-    heights are."""
+    """Return the maps of heights, the library's own first; of several arrays those named as heights."""
     default = reader._default_channel_index
     order = [default, *range(len(channels))] if default < len(channels) else range(len(channels))
     maps = [k for k in dict.fromkeys(order) if _is_height(channels[k])]
@@ -102,8 +99,7 @@ def topography(reader: Any, index: int) -> Any:
 
 
 def with_coordinates(reader: Any, channel: Any) -> Array | None:
-    """Return the points x, y, z of an array Z beside X and Y of its shape, a row or a column of it, as of a
-    meshgrid."""
+    """Return the points x, y, z of an array Z beside X and Y that go with it, as of a meshgrid."""
     indices = {str(c.name).casefold(): k for k, c in enumerate(reader.channels)}
     if str(channel.name).casefold() != "z" or not {"x", "y"} <= set(indices):
         return None

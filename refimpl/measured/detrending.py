@@ -117,8 +117,7 @@ def fit_form(x: Array, y: Array, z: Array, level: str | int, pixel: tuple[float,
 
 
 def fit(x: Array, y: Array, z: Array, degree: int) -> Polynomial:
-    """Return the least-squares polynomial of total degree <= ``degree`` of ``z[i, j]`` at ``(x_i, y_j)``; -1:
-    zero.
+    """Return the least-squares polynomial of total degree <= ``degree``, at points (x_i, y_j); -1: zero.
 
     With Q_x, Q_y orthonormal polynomials on the points of each axis, the products Q_x^a Q_y^b are orthonormal
     on the rectangle, so the best fit is the projection on those with a + b <= degree; where points are
@@ -147,8 +146,7 @@ def fit(x: Array, y: Array, z: Array, degree: int) -> Polynomial:
 
 
 def _fit_curved(x: Array, y: Array, z: Array, level: str, pixel: tuple[float, float]) -> Curved:
-    """Return the least-squares form along z over height, slopes, curvature (and axis), from the paraboloid's
-    values."""
+    """Return the least-squares form along z, starting from the paraboloid's values."""
     thin = max(1, math.ceil(math.sqrt(z.size / _FITTED)))
     at_x, at_y, part = x[::thin], y[::thin], z[::thin, ::thin]
     start = fit(at_x, at_y, part, 2)

@@ -183,7 +183,6 @@ class Inspection:
 
 
 def _listed(values: Any) -> Any:
-    """Return the arrays as lists."""
     if isinstance(values, dict):
         return {key: _listed(value) for key, value in values.items()}
     return values.tolist() if isinstance(values, np.ndarray) else values

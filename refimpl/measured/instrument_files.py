@@ -70,8 +70,7 @@ def claimed_by_magic(path: Path, head: bytes) -> bool:
 
 
 def _formats(library: ModuleType, path: Path, head: bytes) -> list[str]:
-    """Return the formats to try: those whose mark the first bytes are, then those of the suffix; if there is
-    none, all that the bytes allow but those without a mark, which take any bytes."""
+    """Return the formats of the mark, then of the suffix; else all that do not take any bytes."""
     match, suffix = library.IO.MagicMatch, path.suffix.lower()[1:]
     marked, own, others = [], [], []
     for reader in library.IO.readers:
@@ -116,8 +115,7 @@ def _quietly() -> Iterator[list[warnings.WarningMessage]]:
 def _record(
     path: Path, form: str, found: Any, sized: bool, given: Overrides, said: list[warnings.WarningMessage]
 ) -> RawHeights:
-    """Return the library's map as it lies here: its heights (m; missing: NaN), pixel, unit, and the library's
-    words.
+    """Return the library's map as it lies here: heights (m), pixel, unit, and the library's words.
 
     ``sized``: the file states its size.
     """
@@ -147,8 +145,7 @@ def _record(
 
 
 def _of_container(library: ModuleType, path: Path, given: Overrides) -> RawHeights:
-    """Return a measurement of a container of contact.engineering, scaled and detrended as its metadata
-    say."""
+    """Return a measurement of a contact.engineering container, scaled and detrended as it says."""
     from SurfaceTopography.Container.IO import CEReader
 
     with _quietly() as said:

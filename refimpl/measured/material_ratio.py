@@ -11,8 +11,7 @@ CORE = 0.4  # material ratio of the core's secant
 
 
 def material_ratio(z: Array, classes: int = CLASSES) -> tuple[Array, Array]:
-    """Return the material ratios 0 to 1, and the heights (m, from the mean) that those shares of the points
-    reach."""
+    """Return material ratios 0 to 1, and the heights (m, from the mean) that those shares reach."""
     ratio = np.linspace(0.0, 1.0, classes + 1)
     return ratio, np.nanquantile(z, 1.0 - ratio) - np.nanmean(z)
 

@@ -8,13 +8,12 @@ from pathlib import Path
 import numpy as np
 import scipy
 
-from refimpl.errors import InputError, require_one_of
+from refimpl.errors import InputError, require_one_of, require_size
 from refimpl.grid import Array, Mask
 from refimpl.measured.detrending import fit
 from refimpl.measured.instrument_files import library_for
 from refimpl.measured.missing_points import fill
 from refimpl.measured.reading import RawHeights
-from refimpl.surfaces.surface import positive
 
 NEIGHBOURHOOD = 5  # points an axis
 _RANK = 20  # rank among 25 points: the 80th percentile; four or five of them may be outliers
@@ -31,13 +30,13 @@ def check_preparation(
     if not isinstance(channel, str | int | None) or isinstance(channel, bool):
         raise InputError("channel", channel, "a channel's name or number")
     if outliers is not None:
-        positive("outliers", outliers, "a number of spreads, say 6")
+        require_size("outliers", outliers, "a number of spreads, say 6")
     if scan_lines is not None:
         require_one_of("scan_lines", scan_lines, ("x", "y"))
     wavelengths = {
         name: value for name, value in (("low_pass", low_pass), ("high_pass", high_pass)) if value is not None
     }
-    lengths = [positive(name, value, "a wavelength in m") for name, value in wavelengths.items()]
+    lengths = [require_size(name, value, "a wavelength in m") for name, value in wavelengths.items()]
     if len(lengths) == 2 and lengths[0] >= lengths[1]:
         raise InputError("low_pass", low_pass, f"less than high_pass, {lengths[1]:g} m")
 
@@ -154,8 +153,7 @@ def _filtered(
 
 
 def gaussian_filter(z: Array, pixel: tuple[float, float], wavelength: float, repeats: bool = False) -> Array:
-    """Return the mean of ``z`` with Gaussian weights, transmission 2^-(wavelength f)^2 at the spatial
-    frequency f.
+    """Return the mean of ``z`` with Gaussian weights: transmission 2^-(wavelength f)^2.
 
     Beyond the border there is nothing: the weights inside are scaled to a sum of one. ``repeats``: periodic.
     """

@@ -20,8 +20,7 @@ NORMALISATION = "<h^2> = (2 pi)^-2 int C d^2q over all q of the plane, C average
 
 
 def periodogram(z: Array, pixel: Pixel) -> tuple[Array, Array, Array]:
-    """Return the two-dimensional spectrum (m^4) under Hann's window on both axes, and its wave numbers
-    (rad/m).
+    """Return the spectrum (m^4) under Hann's window on both axes, and its wave numbers (rad/m).
 
     Missing points count as the mean height.
     """
@@ -66,8 +65,7 @@ class Spectrum:
         return cls(totals[1][use] / count[use], totals[0][use] / count[use], count[use])
 
     def slope(self, longest: float) -> tuple[float, float]:
-        """Return the slope d ln C / d ln q below a wavelength (m), its standard deviation by the scatter
-        about it.
+        """Return d ln C / d ln q below a wavelength (m), and its deviation by the scatter about it.
 
         Down to four pixels, or to where the spectrum breaks off. Least squares, each ring by its points; NaN
         of fewer than six rings.
@@ -81,8 +79,7 @@ class Spectrum:
         return float(line[0]), math.sqrt(_OVERLAP * max(float(covariance[0, 0]), 0.0))
 
     def short_cut(self) -> float | None:
-        """Return the wavelength (m) at which the spectrum breaks off, a fall to a tenth within a fifth of q,
-        or None."""
+        """Return the wavelength (m) at which C falls to a tenth within a fifth of q, or None."""
         further = np.interp(1.2 * self.q, self.q, self.C)
         sure = (self.count >= _RING) & (1.2 * self.q <= self.q[-1])
         falls = np.flatnonzero((further < 0.1 * self.C) & sure)
@@ -107,8 +104,7 @@ def texture_direction(z: Array, pixel: Pixel) -> float:
 
 
 def fill_error(filled: Array, missing: NDArray[np.bool_], pixel: Pixel) -> Array:
-    """Return the error (m) of filling such holes: that of holes of the same pattern half a map away, moved
-    back.
+    """Return the error (m) of filling holes: of the same pattern half a map away, moved back.
 
     There the filled map is the truth.
     """

@@ -47,8 +47,7 @@ def word_in_corner(sample: list[list[str]], unknown: list[str]) -> str:
 def without_labels(
     path: Path, rows: Array, sample: list[list[str]], corner: str = ""
 ) -> tuple[Array, list[str]]:
-    """Return the heights without an index row or column; points x, y, z of heights in a frame of even
-    coordinates.
+    """Return heights without an index row or column; points x, y, z where coordinates frame them.
 
     Raises InputError for other coordinates beside the heights, and for a ``corner`` without them.
     """

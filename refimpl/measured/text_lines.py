@@ -58,8 +58,7 @@ def encoding_of(path: Path) -> str:
 
 
 def lines_of(path: Path, encoding: str) -> Iterator[tuple[int, str]]:
-    """Yield the number and text of each line, one at a time: a list takes several times what their numbers
-    do."""
+    """Yield number and text of each line, one at a time: a list takes several times the memory."""
     with path.open(encoding=encoding) as file:
         lines = (
             (number, _spelled(part.strip(" \xa0")))
@@ -79,8 +78,7 @@ def _spelled(line: str) -> str:
 
 
 def _heights(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, str]]:
-    """Yield Wyko's text without the arrays that are no heights: a block's line states its name, type and
-    length."""
+    """Yield Wyko's text without arrays that are no heights: a block's line states name and length."""
     keeps = True
     for number, line in lines:
         if block := _WYKO_BLOCK.match(line):

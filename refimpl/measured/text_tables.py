@@ -138,7 +138,6 @@ class _Layout:
         return all(map(self.is_number, after.split()[1:])) and len(after.split()) > 1
 
     def ends(self, line: str) -> bool:
-        """Return whether the separator ends the line."""
         return self.separator is not None and line.endswith(self.separator)
 
     def is_number(self, cell: str) -> bool:
@@ -231,8 +230,7 @@ def _plain_numbers(layout: _Layout, lines: Iterator[str]) -> Array | None:
 def _numbers(
     path: Path, layout: _Layout, lines: Iterator[tuple[int, str]], width: int
 ) -> tuple[Array, list[str]]:
-    """Return the numbers of all lines, each of ``width`` entries, and notes. Raises InputError with the
-    line."""
+    """Return the numbers of all lines, each of ``width`` entries, and notes. Raises `InputError`."""
     values, decimals, filled, short = array("d"), set[str](), [False, False], list[int]()
     for number, line in lines:
         if layout.separator != ",":

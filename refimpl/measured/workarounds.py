@@ -83,7 +83,6 @@ def _gwy(raw: bytes, path: Path, given: Overrides) -> tuple[Source, tuple[str, .
 
 
 def _gwy_unit(field: bytes, key: bytes) -> str:
-    """Return the unit that a field states, or nothing."""
     found = re.search(rb"%b\0oGwySIUnit\0.{4}unitstr\0s([^\0]*)" % key, field, re.DOTALL)
     return found[1].decode("utf-8", "replace") if found else ""
 

@@ -299,8 +299,7 @@ def certify(
 
 
 def _shares(f: Array) -> Array:
-    """Return the pressures over their sum, as products of very small ones would underflow; 0 without
-    contact."""
+    """Return pressures over their sum, as products of small ones underflow; 0 without contact."""
     total = float(f.sum())
     return f / total if total > 0 else f
 

@@ -91,8 +91,7 @@ class Pair:
 
     @property
     def softer_hardness(self) -> float | None:
-        """The smaller of the hardnesses given (Pa); None when neither is. A body without one counts as
-        unlimited."""
+        """The smaller of the hardnesses given (Pa); None without any."""
         given = [h for h in (self.lower.hardness, self.upper.hardness) if h is not None]
         return min(given, default=None)
 

@@ -28,8 +28,7 @@ class CoarseGrid(NamedTuple):
 
     @classmethod
     def under(cls, shape: Shape, window: Callable[[Array], Array], first: float, beyond: int) -> CoarseGrid:
-        """Return the coarse grid for a window of elements, with points from `first` and as many beyond the
-        cells.
+        """Return the coarse grid for a window of elements, with points from ``first`` on.
 
         ``window`` is the weight by the distance, both in spacings.
         """

@@ -133,5 +133,4 @@ class _PartCounter(Counter):
         self._whole, self._name = whole, name
 
     def add(self, what: str, points: int) -> None:
-        """See `Counter`."""
         self._whole.add(f"{self._name} {what}", points)

@@ -107,7 +107,6 @@ def expected_contact(problem: Problem) -> ExpectedContact:
 
 
 def _coarse(problem: Problem) -> Problem:
-    """Return the problem's heights at fewer points, if there are more than it takes."""
     n, m = problem.grid.shape
     grid = problem.grid.refined((min(n, _COARSE), min(m, _COARSE)))
     gap, mean_surface = (resampled(z, grid.shape) for z in (problem.gap, problem.mean_surface))
@@ -123,8 +122,7 @@ def _bearing(problem: Problem, stiffness: float, load: float) -> Mask:
 
 
 def _first(order: NDArray[np.intp], count: int, gap: Array) -> Mask:
-    """Return the first ``count`` elements of an order, or all, and those as low as the last: a flat top
-    touches as a whole."""
+    """Return the first ``count`` elements of an order, and those as low as the last of them."""
     last = order[min(count, order.size) - 1]
     chosen: Mask = gap <= gap.flat[last] + _ROUNDING * np.ptp(gap)
     return chosen
@@ -136,7 +134,6 @@ def _rising(gap: Array) -> NDArray[np.intp]:
 
 
 def _gradient_squared(problem: Problem) -> Array:
-    """Return the squared gradient of the gap."""
     slopes = _slopes(problem, problem.gap)
     squared: Array = slopes.tan_x**2 + slopes.tan_y**2
     return squared
@@ -205,8 +202,7 @@ def _slopes(problem: Problem, heights: Array) -> Slopes:
 
 
 def _patches(contact: Mask, periodic: bool) -> float:
-    """Return the number of patches of equal size with the same weight: ``(sum n)^2 / sum n^2`` over the
-    patches."""
+    """Return the number of equal patches with the same weight: ``(sum n)^2 / sum n^2``."""
     sizes = patch_sizes(contact, periodic=periodic).astype(np.float64)
     return float(sizes.sum() ** 2 / np.sum(sizes**2))
 

@@ -177,8 +177,7 @@ class _Choice:
 
 
 def _smallest(effects_of: dict[str, float], budget: float) -> tuple[set[str], float]:
-    """Return the names whose effects, smallest first, add up to at most the budget; and what is left of
-    it."""
+    """Return the names of the smallest effects that add up to at most the budget; and what is left."""
     names: set[str] = set()
     for name, effect in sorted(effects_of.items(), key=lambda item: item[1]):
         if effect > budget:

@@ -61,13 +61,8 @@ class Discretiser:
     """
 
     def __init__(self, scene: Scene, approach: float | None) -> None:
-        self._scene, self._approach = scene, approach
+        self.scene, self._approach = scene, approach
         self._last: Problem | None = None
-
-    @property
-    def scene(self) -> Scene:
-        """The scene."""
-        return self._scene
 
     def with_all_terms(self, grid: Grid) -> Problem:
         """Return the problem with all terms, for planning, and keep it."""
@@ -81,4 +76,4 @@ class Discretiser:
         return problem.with_terms(terms)
 
     def _problem(self, grid: Grid) -> Problem:
-        return discretise(self._scene, grid, approach=self._approach)
+        return discretise(self.scene, grid, approach=self._approach)

@@ -155,7 +155,6 @@ def _body() -> tuple[Key, ...]:
 
 
 def _of(made: type, texts: key_texts.Texts, allowed: Callable[[str], str]) -> tuple[Key, ...]:
-    """Return the keys of a table that becomes an instance of a dataclass."""
     hints = get_type_hints(made)
     found = {f.name: f for f in fields(made) if f.init}
     _complete(made.__name__, texts, list(found))

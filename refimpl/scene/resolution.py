@@ -47,6 +47,5 @@ def unresolved_slope(scene: Scene, grid: Grid) -> float:
 
 
 def _details(scene: Scene, spacing: float) -> list[Detail]:
-    """Return the finest details of the scene's random roughness."""
     parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
     return [detail for part in parts if (detail := part.detail(spacing)) is not None]

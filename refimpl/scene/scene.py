@@ -280,8 +280,7 @@ class Scene:
         return _centred("lower", lower, grid), _centred("upper", upper, grid)
 
     def _summed(self, name: str, grid: Grid, offset: tuple[float, float]) -> Array:
-        """Return the sum of a body's parts (m); a refusal names the part, or the field of the scene that is
-        why."""
+        """Return the sum of a body's parts (m); a refusal names the part, or the scene's field."""
         z = grid.zeros
         for k, part in enumerate(self.parts(name)):
             try:
@@ -298,7 +297,6 @@ class Scene:
 
 
 def _two(field: str, value: Any, allowed: str) -> tuple[Any, Any]:
-    """Return a pair of numbers from a sequence of two."""
     if not isinstance(value, list | tuple) or len(value) != 2:
         raise InputError(field, value, allowed)
     first, second = (float(item) if isinstance(item, np.floating) else item for item in value)

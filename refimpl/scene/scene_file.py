@@ -42,8 +42,7 @@ def read_scene(path: str | Path) -> Scene:
 
 
 def read_tolerances(path: str | Path) -> dict[str, float]:
-    """Return the ``[tolerances]`` of a scene's file: relative half-widths (95 %) by parameter, none by
-    default.
+    """Return a scene file's ``[tolerances]``: relative half-widths (95 %) by parameter.
 
     >>> read_tolerances("table1-smooth")
     {}
@@ -66,9 +65,7 @@ def _read(name: str | Path) -> tuple[dict[str, Any], Path]:
 
 
 def read_toml(path: Path, field: str) -> dict[str, Any]:
-    """Return the parsed file; raises `InputError`, naming the ``field``, for one that is too large or no
-    TOML.
-    """
+    """Return the parsed file; `InputError`, naming ``field``, for one too large or no TOML."""
     try:
         if path.stat().st_size > _MAX_BYTES:
             raise InputError(field, str(path), f"a TOML file of at most {_MAX_BYTES} bytes")
@@ -113,9 +110,7 @@ def scene_from_dict(table: Mapping[str, Any], folder: Path) -> Scene:
 
 
 def scene_to_dict(scene: Scene) -> dict[str, Any]:
-    """Return the scene as a plain table; raises `InputError` for arrays, and for surfaces and laws of one's
-    own.
-    """
+    """Return the scene as a plain table; `InputError` for arrays, and surfaces and laws of one's own."""
     if not isinstance(scene, Scene):
         raise InputError("scene", scene, "a Scene")
     if type(scene.friction) is not Friction:

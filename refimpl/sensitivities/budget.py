@@ -159,8 +159,7 @@ def _half_space(
 
 
 def _plasticity(scene: Scene, solution: Solution) -> dict[str, float]:
-    """Return the difference of each number to the solution with capped pressures; infinite where none
-    converges.
+    """Return each number's difference to the capped solution; infinite where none converges.
 
     Empty where no pressure exceeds the hardness, and where none is given.
     """

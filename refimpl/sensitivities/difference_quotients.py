@@ -104,9 +104,7 @@ def _count_scatter(solution: Solution) -> float:
 
 
 def area_bound(solution: Solution, value: float, span: float) -> float:
-    """Return the 95 % bound of an area's derivative by two solves: elements counted in both, and the cubic
-    term.
-    """
+    """Return the 95 % bound of an area's derivative by two solves: counts, and the cubic term."""
     cubic = _MOST_CUBIC * (0.5 * span / value) ** 2 * solution.contact_area / abs(value)
     return math.hypot(2 * math.sqrt(2) * _count_scatter(solution) / span, cubic)
 

@@ -63,9 +63,7 @@ class FixedContact:
         return self._state(problem, pressure, approach)[2]
 
     def residual(self, problem: Problem, pressure: Array, approach: float) -> Array:
-        """Return the misfit of Eq. (6) on the set over the base approach, then that of the load over the
-        load.
-        """
+        """Return the misfit of Eq. (6) over the base approach, then that of the load over the load."""
         u, K, forces = self._state(problem, pressure, approach)
         misfit = (u + K * (problem.gap - approach))[self.free] / self.approach
         return np.append(misfit, forces.normal / (problem.load or forces.normal) - 1)

@@ -28,7 +28,6 @@ def _hardness(evidence: Evidence) -> str | None:
 
 
 def _pressure(evidence: Evidence) -> str | None:
-    """Describe a mean pressure beyond the modulus."""
     problem, modulus = evidence.problem, evidence.scene.materials.reduced_modulus
     if problem.load is None or problem.load <= modulus * problem.grid.nominal_area:
         return None

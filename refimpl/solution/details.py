@@ -26,21 +26,19 @@ from refimpl.solution.model_warning import Notice
 
 
 class _FromPart:
-    """An attribute that a part holds under the same name."""
+    """An attribute that is read, under its own name, from the part at a dotted path."""
 
-    def __init__(self, part: str) -> None:
-        self._part = part
+    def __init__(self, path: str) -> None:
+        self._path = path
 
     def __set_name__(self, owner: type, name: str) -> None:
-        self._read = attrgetter(f"{self._part}.{name}")
+        self._read = attrgetter(f"{self._path}.{name}")
 
     def __get__(self, details: Any, owner: type) -> Any:
         return self if details is None else self._read(details)
 
 
-def part(path: str) -> Any:
-    """Return an attribute that is read, under its own name, from the part at a dotted path."""
-    return _FromPart(path)
+part: Any = _FromPart  # its instances stand for values of any type
 
 
 class _Parts:

@@ -97,8 +97,7 @@ def roughness_slope(scene: Scene, grid: Grid) -> float:
 
 
 def _plasticity(evidence: Evidence) -> ModelWarning | None:
-    """Warn by Eq. (12): ``2.2 rms / length`` is the rms slope of Eq. (9)'s roughness (``sqrt(4.6) =
-    2.14``)."""
+    """Warn by Eq. (12): ``2.2 rms / length`` is the rms slope of Eq. (9) (``sqrt(4.6) = 2.14``)."""
     pair = evidence.problem.pair
     hardness = pair.softer_hardness
     if hardness is None or evidence.problem.terms.plastic:
@@ -178,8 +177,7 @@ def _slopes(evidence: Evidence) -> list[ModelWarning | None]:
 
 
 def _error_at_slopes(evidence: Evidence) -> SlopeError:
-    """Return the error as quoted by the solution; where the user excluded the slope terms, that of the
-    deformed surfaces."""
+    """Return the error as quoted, or at the deformed surfaces where slope terms are excluded."""
     term = evidence.plan.term("oblique")
     if term.included or term.negligible:
         return evidence.slope_error

@@ -26,8 +26,7 @@ _LENGTHS = ("correlation_length", "short_cut")  # roughness of longer ones is a 
 
 
 def notes(solved: Evidence) -> tuple[Notice, ...]:
-    """Return the notes of implausible inputs and of surfaces; unresolved roughness has a named warning of its
-    own."""
+    """Return notes of implausible inputs and of surfaces, but those with a warning of their own."""
     scene, grid = solved.scene, solved.problem.grid
     parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
     lines = (*implausible(scene, solved.plan), *scene.notes(grid))

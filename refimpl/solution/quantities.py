@@ -31,8 +31,7 @@ def own_parts(solution: Numbers, quantity: Quantity) -> float | None:
 
 
 def _mean_pressure_error(solution: Numbers, quantity: Quantity) -> float | None:
-    """Return the force on the area: ``(P + dP) / (A - dA) - P / A``, with dP / P of N; unbounded where A
-    is."""
+    """Return ``(P + dP) / (A - dA) - P / A``, with dP / P of N; unbounded where A is."""
     area, force = solution.error("contact_area"), solution.error("normal_force")
     if area is None or force is None:
         return None
@@ -71,7 +70,6 @@ def _mean_gap_error(solution: Numbers, quantity: Quantity) -> float | None:
 
 
 def _mean(pressure: Array) -> float:
-    """Average over the elements in contact; 0 without contact."""
     touching = pressure[pressure > 0]
     return float(touching.mean()) if touching.size else 0.0
 

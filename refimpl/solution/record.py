@@ -80,6 +80,5 @@ class Record(_Fields):
 
     @property
     def converged(self) -> bool:
-        """True if the loops ended well and the certificate holds; an alternating contact edge is certified
-        too."""
+        """True if the loops ended well and the certificate holds, with an alternating edge or without."""
         return self.status in (Status.CONVERGED, Status.CYCLED)

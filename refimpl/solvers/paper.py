@@ -155,7 +155,6 @@ class _Scheme:
 
     @property
     def contact(self) -> Mask:
-        """Elements with positive pressure."""
         return self.pressure > 0
 
     def copy(self) -> _Scheme:
@@ -167,7 +166,6 @@ class _Scheme:
         vars(self).update(vars(copied))
 
     def solve(self, tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
-        """Solve the balance with tau on an active set."""
         self._approach = self.balance(self._approach, active)
         self.traction = active.traction(self.problem.friction, self.pressure, self._last_clearance)
         return self.settled
@@ -245,8 +243,7 @@ class _Scheme:
         return self._clearance
 
     def _iterate(self, u: Array, inside: Mask, *, on_circle: bool) -> Mask:
-        """Run (1b) periodic inversion, or (1c) residual correction, with (1b') exclusion; the contact
-        left."""
+        """Run (1b) periodic inversion or (1c) residual correction, with (1b') exclusion."""
         flexibility = self._apply_periodic if on_circle else self._apply
         pressure = self.pressure * inside
         answer = flexibility(pressure)

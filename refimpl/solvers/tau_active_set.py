@@ -52,33 +52,17 @@ Clearance = Callable[[], Array]
 ContactTest = Callable[[Mask], bool]
 
 
-class ActiveSet(Protocol):
-    """Elements under tau; ``clearance()`` is ``v - approach`` of the present state (m)."""
-
-    @property
-    def is_fixed(self) -> bool:
-        """Return whether shares of tau do not depend on the state."""
-
-    def traction(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
-        """Return r (Pa)."""
-
-    def shear_offset(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
-        """Return ``r - slope f`` (Pa)."""
-
-
 @dataclass(frozen=True, eq=False)
 class FixedSet:
-    """Tau on given elements."""
+    """Tau on given elements: traction r and shear offset ``r - slope f`` (Pa), whatever the state."""
 
     elements: Mask
     is_fixed = True
 
     def traction(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
-        """Return r (Pa)."""
         return law.traction(pressure, self.elements)
 
     def shear_offset(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
-        """Return ``r - slope f`` (Pa)."""
         return law.shear_offset(pressure, self.elements)
 
 
@@ -96,17 +80,19 @@ class GradualSet:
     is_fixed = False
 
     def traction(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
-        """Return r (Pa)."""
         return law.slope * pressure + self.shear_offset(law, pressure, clearance)
 
     def shear_offset(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
-        """Return ``r - slope f`` (Pa)."""
         share = np.clip(1 - clearance() / self.reach, 0.0, 1.0)
         share[pressure > 0] = 1.0
         return share * law.shear_offset(pressure, share > 0)
 
 
-def first_set(problem: Problem) -> FixedSet | GradualSet:
+ActiveSet = FixedSet | GradualSet
+"""Elements under tau; ``is_fixed`` if shares do not depend on ``clearance()``, ``v - approach`` (m)."""
+
+
+def first_set(problem: Problem) -> ActiveSet:
     """Return the gradual set of a problem; every element where the law's jump is too small to move any."""
     law, elasticity = problem.friction, problem.elasticity
     ratio = max(abs(elasticity.coupling_ratio), _LEAST_RATIO)

@@ -80,8 +80,7 @@ class NoiseLattice:
     def smoothing(
         self, x: Array, axis: int, period: float | None = None
     ) -> tuple[range, scipy.sparse.csr_array]:
-        """Return the nodes that the sum needs along one axis of the sheared coordinates, and the kernel as a
-        matrix S, ``(len(x), nodes)``.
+        """Return the nodes along one sheared axis, and the kernel as a matrix S, (len(x), nodes).
 
         The field is ``S_x w S_y^T``: the exact correlation along an axis, in the ensemble, is ``S S^T``.
         """
@@ -123,7 +122,6 @@ def _spacing(length: float, period: float | None) -> float:
 
 
 def _images(ratio: float) -> float:
-    """Return ``sum over m of exp(-2.3 (m side / l)^2)``, ratio = side / l >= 1: one axis's variance with
-    images."""
+    """Return ``sum_m exp(-2.3 (m ratio)^2)``, ratio = side / l >= 1: a variance with images."""
     m = np.arange(1, 6)  # the sixth image would add exp(-2.3 * 36) = 1e-36
     return float(1.0 + 2.0 * np.exp(-DECAY * (m * ratio) ** 2).sum())

@@ -32,10 +32,10 @@ from typing import Any, ClassVar, NoReturn
 import numpy as np
 import scipy
 
-from refimpl.errors import InputError, require_number, require_size
+from refimpl.errors import InputError, keep_doubles, require_number, require_size
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.lay import Lay
-from refimpl.surfaces.surface import Detail, Surface, finite, require_seed
+from refimpl.surfaces.surface import Detail, Surface, require_seed
 from refimpl.surfaces.waves import ROUNDING, PeriodicLattice, rotated
 
 RESOLVED = 4.0  # elements per shortest wave from which slopes count as resolved
@@ -82,9 +82,8 @@ class SelfAffineRoughness(Surface):
         if not self.roll_off > self.short_cut:
             raise InputError("short_cut", self.short_cut, f"less than roll_off, {self.roll_off:.6g} m")
         require_size("anisotropy", self.anisotropy, "a positive ratio of lengths along and across the lay")
-        finite("lay", self.lay, "a finite angle in rad")
-        for name in ("hurst", "roll_off", "long_cut", "short_cut", "anisotropy", "lay"):
-            object.__setattr__(self, name, float(getattr(self, name)))
+        require_number("lay", self.lay, "a finite angle in rad")
+        keep_doubles(self, "hurst", "roll_off", "long_cut", "short_cut", "anisotropy", "lay")
         object.__setattr__(self, "seed", require_seed(self.seed))
         self._fix_size()
 

@@ -47,8 +47,7 @@ def rms_slopes(z: Array, spacing: float | tuple[float, float]) -> tuple[float, f
 
 
 def autocorrelation(z: Array, axis: int) -> Array:
-    """Return the mean product of deviations at lags 0, 1, ... along one axis, over the variance;
-    ``(z.shape[axis],)``.
+    """Return the mean product of deviations at lags 0, 1, ... along an axis, over the variance.
 
     Each lag averages the pairs that exist (nothing wraps). Heights of no variance give NaN.
     """
@@ -61,8 +60,7 @@ def autocorrelation(z: Array, axis: int) -> Array:
 
 
 def correlation_length(z: Array, spacing: float, level: float = 0.1) -> float | None:
-    """Return the lag (m) where the autocorrelation, averaged over both axes, first falls to ``level``; None
-    if never.
+    """Return the lag (m) where the mean autocorrelation first falls to ``level``; None if never.
 
     ``z`` is square; linear between the points.
     """

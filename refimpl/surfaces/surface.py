@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.errors import InputError, is_whole, require_number, require_size
+from refimpl.errors import InputError, is_whole, require_size
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.arrays import check_domain, checked, interpolation_notes, sampled, sampling_note
 
@@ -42,8 +42,7 @@ class Detail:
     missed: str = ""
 
     def required(self, accuracy: float) -> float:
-        """Return the elements per length at which central differences see the rms slope too small by
-        ``accuracy``.
+        """Return the elements per length at which differences miss ``accuracy`` of the rms slope.
 
         A wave q at the angle t to the axis has ``sin(q h cos t) / h`` in place of ``q cos t``: of the mean
         square slope ``(h curvature / length)^2 / 4`` is missing, of the rms slope half of that.
@@ -111,8 +110,7 @@ class Surface(ABC):
         return ()
 
     def pitch(self, lengths: tuple[float, float]) -> float | None:
-        """Return the finest distance between data points on a domain of those lengths (m); None for a
-        formula."""
+        """Return the finest distance of data points on such a domain (m); None for a formula."""
         return None
 
     def data_points(self, grid: Grid) -> tuple[Array, tuple[float, float]]:
@@ -276,24 +274,10 @@ def require_seed(seed: Any) -> int:
     return int(seed)
 
 
-def finite(field: str, value: Any, allowed: str) -> float:
-    """Return ``value`` as a float if it is a finite real number (no text, no truth value); else
-    InputError.
-    """
-    require_number(field, value, allowed)
-    return float(value)
-
-
-def positive(field: str, value: Any, allowed: str) -> float:
-    """Return ``value`` as a float if it is a positive size that arithmetic can bear; else InputError."""
-    require_size(field, value, allowed)
-    return float(value)
-
-
 def pixel_edges(field: str, value: object) -> tuple[float, float]:
     """Return the edges (m) of a pixel from one length or two; else InputError."""
     allowed = "a positive length in m, or two (x, y)"
     pair = tuple(value) if isinstance(value, list | tuple) else (value, value)
     if len(pair) != 2:
         raise InputError(field, value, allowed)
-    return positive(field, pair[0], allowed), positive(field, pair[1], allowed)
+    return require_size(field, pair[0], allowed), require_size(field, pair[1], allowed)

@@ -106,8 +106,7 @@ class CappedCG(ProjectedCG):
             self._bear(self._target - inner(self._K, self.pressure))
 
     def _bear(self, missing: float) -> None:
-        """Let the room below the cap bear load that a cut has lost: of free elements, then of the next
-        ones."""
+        """Let the room below the cap bear load that a cut has lost: free elements, then the next."""
         assert self._target is not None
         if missing <= _LOAD_ROUNDING * self._target:
             return
@@ -185,7 +184,6 @@ class CappedCG(ProjectedCG):
 
     @property
     def _free_target(self) -> float | None:
-        """The load's target for the free elements."""
         if self._target is None:
             return None
         return self._target - self._cap * float(np.sum(self._K * self.capped))

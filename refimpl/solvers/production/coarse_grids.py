@@ -56,8 +56,7 @@ def nested_problems(problem: Problem, above: Shape | None) -> list[Problem]:
 
 
 def _coarser(shape: Shape) -> Shape:
-    """Return half as many elements along each axis, rounded up; of a small grid a quarter if those are
-    enough."""
+    """Return half as many elements per axis, rounded up; of a small grid a quarter, if enough."""
     half = tuple((n + 1) // 2 for n in shape)
     quarter = tuple((n + 1) // 2 for n in half)
     n, m = quarter if max(shape) <= QUARTERED and min(quarter) >= COARSEST else half
@@ -65,8 +64,7 @@ def _coarser(shape: Shape) -> Shape:
 
 
 def coarse_tolerance(shape: Shape) -> float:
-    """Return the residual of a coarse grid, below the error that the next grid's start has from
-    interpolation.
+    """Return the residual of a coarse grid, below the error of the next start's interpolation.
 
     >>> coarse_tolerance((256, 256)), coarse_tolerance((1024, 512))
     (0.001, 0.0005)
@@ -75,8 +73,7 @@ def coarse_tolerance(shape: Shape) -> float:
 
 
 def coarsened(fine: Problem, shape: Shape) -> Problem:
-    """Return the problem on a coarser grid, halved as often as needed: means of four where counts are
-    even."""
+    """Return the problem on a coarser grid, halved as often as needed."""
     while fine.grid.shape != shape:
         n, m = fine.grid.shape
         grid = fine.grid.refined(((n + 1) // 2, (m + 1) // 2))
@@ -108,8 +105,7 @@ def winkler_pressure(problem: Problem) -> Array:
 
 
 def _bearing_depth(problem: Problem) -> float:
-    """Return the least depth at which the foundation bears the load (m), of all that are as deep as some
-    element.
+    """Return the least depth of an element at which the foundation bears the load (m).
 
     Its stiffness is that of a half-space under a load of the contact's width, ``1 / (compliance width)``. On
     32 x 32 elements 0.6 or 2.5 times the width cost CG a sixth more steps (measured), and contact on 3 of 10

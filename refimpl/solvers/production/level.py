@@ -85,7 +85,7 @@ class LevelSolver:
 
         Where one of its states meets the window's edge the result is not final: see ``window_too_small``.
         """
-        ended = iterate(self, self.problem, tolerance)
+        ended, used = iterate(self, self.problem, tolerance), self.lagged.indentation
         status = ended.status(self._status())
         if self._status() is not Status.CONVERGED and not (ended.settled or self.exhausted or self.stagnated):
             status = Status.ITERATION_LIMIT
@@ -96,12 +96,8 @@ class LevelSolver:
             status=status,
             excluded=self.full(ended.excluded),
             iterations={f"CG at {self.whole.grid}": self.cg_iterations},
-            indentation=self._full_indentation(),
+            indentation=None if used is None else self.full(used),
         )
-
-    def _full_indentation(self) -> Array | None:
-        used = self.lagged.indentation
-        return None if used is None else self.full(used)
 
     def copy(self) -> LevelSolver:
         """Return the solver with a state of its own."""
@@ -118,12 +114,10 @@ class LevelSolver:
 
     @property
     def pressure(self) -> Array:
-        """Present pressure on the window (Pa)."""
         return self.cg.pressure
 
     @property
     def contact(self) -> Mask:
-        """Elements with positive present pressure."""
         return self.cg.pressure > 0
 
     @property
@@ -208,8 +202,7 @@ class LevelSolver:
         return residual
 
     def _contact_suffices(self) -> bool:
-        """Return whether no more than the contact of the active set's elements is asked of this state, and is
-        decided but for a small share."""
+        """Return whether this state needs only a contact set, which is decided but for a small share."""
         if self._enough is None or not self._enough(self.cg.contact):
             return False
         active = self.lagged.active

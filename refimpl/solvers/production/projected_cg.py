@@ -109,8 +109,7 @@ class ProjectedCG:
         return self._separation
 
     def residuals(self) -> tuple[float, float]:
-        """Return complementarity gap over elastic energy, and penetration over approach, of the fixed
-        problem.
+        """Return gap over elastic energy, and penetration over approach, of the fixed problem.
 
         At a prescribed approach the first is at least the work done by the error of the mean separation.
         """
@@ -125,8 +124,7 @@ class ProjectedCG:
         return contact_residuals(gap, energy, approach, lowest, rounding)
 
     def undecided(self, stiffness: float, among: Mask | None = None) -> int:
-        """Return the number of elements, ``among`` these or all, whose contact the remaining error of the
-        separation can change.
+        """Return how many elements, ``among`` these or all, the error left may move in or out.
 
         ``stiffness`` is the pressure per displacement of a single element (Pa/m).
         """
@@ -171,8 +169,7 @@ class ProjectedCG:
         self._norm = float(self._squares.sum())
 
     def _residual_on_contact(self) -> Array:
-        """Return ``K (approach - v)`` on the contact set, at the approach that makes its part along the
-        weights zero."""
+        """Return ``K (approach - v)`` on the contact, by the approach that leaves nothing along K."""
         v, approach = self._separate().on_contact, self._approach
         if approach is None:
             approach = inner(self._squares, v) / self._norm
@@ -208,8 +205,7 @@ class ProjectedCG:
         return self._projected(direction) if self._exchanged else direction
 
     def _step_to_trial(self, residual: Array, direction: Array) -> bool:
-        """Take the step to the best point up to the trial, cut and scaled; False if the cut leaves
-        nothing."""
+        """Go to the best point up to the trial, cut and scaled; False if the cut leaves nothing."""
         change = (TRIAL_SHARE * self._length) * direction
         trial = self._pressing + change
         cut: Mask | None = None
@@ -243,7 +239,6 @@ class ProjectedCG:
         self.normal_displacement += moved
 
     def _within_bounds(self, pressing: Array) -> bool:
-        """Return whether pressures on the free elements are allowed."""
         return bool(pressing.min() >= 0)
 
     def _longest_step(self, before: Array, change: Array) -> float:
@@ -264,8 +259,7 @@ class ProjectedCG:
             self._exchanged = True
 
     def _step_then_cut(self, residual: Array, direction: Array) -> None:
-        """Take the step by the exact length along the direction, then cut: two applications, without a
-        trial."""
+        """Take the step by its exact length, then cut: two applications, without a trial."""
         moved = self._apply(self._vectors.scatter(direction))
         length = step_share(residual, direction, self._vectors.gather_view(moved))
         if length:  # zero when the constraint alone fixes the set's pressure
