@@ -117,10 +117,7 @@ def is_whole(value: object) -> bool:
 
 
 def keep_doubles(parameters: object, *names: str) -> None:
-    """Store the numbers of a frozen dataclass as doubles: arithmetic is as good as the least of its operands.
-
-    Whole numbers, fractions, NumPy's of any width: what `require_number` has let pass. None stays.
-    """
+    """Store what `require_number` let pass of a frozen dataclass as doubles; None stays."""
     for name in names:
         value = getattr(parameters, name)
         if value is not None:
@@ -151,11 +148,13 @@ def require_one_of(field: str, value: object, allowed: Iterable[str]) -> None:
         raise InputError(field, value, f"one of {', '.join(known)}")
 
 
-def require_regular(field: str, path: Path, most: int) -> None:
-    """Raise `InputError` for a device or a pipe, which may have no end, and for a file of more bytes.
+def unreadable(path: Path, allowed: str) -> InputError:
+    """Return the refusal of a file of heights."""
+    return InputError("path", str(path), allowed)
 
-    What does not exist, and folders, are for the system to refuse.
-    """
+
+def require_regular(field: str, path: Path, most: int) -> None:
+    """Raise `InputError` for a device or a pipe, which may have no end, and for a file of more bytes."""
     found = os.path.exists(path) and not os.path.isdir(path)  # no error for long names
     if found and not (os.path.isfile(path) and os.path.getsize(path) <= most):
         raise InputError(field, str(path), f"a regular file of at most {most} bytes")

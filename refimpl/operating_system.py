@@ -155,10 +155,7 @@ def limit_process(seconds: float, memory: int) -> None:
 
 @contextmanager
 def interrupts_blocked() -> Iterator[None]:
-    """Keep interrupts from processes started in the block: one sent to the whole group is for this process.
-
-    On Windows a console sends them to all.
-    """
+    """Keep interrupts to the group from processes started in the block; Windows sends them to all."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -189,10 +186,7 @@ def kill_group(leader: int) -> None:
 
 
 def has_ended(child: int) -> bool:
-    """Return whether a child has ended. It is not reaped, so that its number stays its own.
-
-    Python has no such call on Windows, where an open handle keeps the number, and in old ones on macOS.
-    """
+    """Return whether a child has ended, not reaping it; by its status where there is no such call."""
     if hasattr(os, "waitid"):
         with suppress(ChildProcessError):  # reaped before
             return os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None

@@ -108,10 +108,7 @@ class GridFeatures:
 
     @property
     def excess(self) -> float:
-        """Mean excess of the counted contact area along its edge (m^2), which may be negative.
-
-        Elements at the hardness carry as much as their area can: the excess is at most what others do not.
-        """
+        """Mean excess of the counted area along its edge (m^2); of a cap, at most what others leave."""
         if not self.touching:
             return 0.0
         found = float(EXCESS @ self.excess_terms) * self.grid.element_area
@@ -142,10 +139,7 @@ class GridFeatures:
 
     @classmethod
     def of(cls, problem: Problem, state: State, *stated: Mapping[str, Mapping[str, float]]) -> GridFeatures:
-        """Return the features of a state; ``stated`` are the error parts of its own grid.
-
-        Approaches of periodic problems do not count from first contact.
-        """
+        """Return the features of a state; ``stated`` are the error parts of its own grid."""
         grid, per_area = problem.grid, friction_per_area(problem.friction, state.forces.normal)
         by_tau = per_area * state.contact_area
         sheared = by_tau if problem.friction.is_linear else abs(state.friction_coefficient)
@@ -324,10 +318,7 @@ def slope_sampling_error(pressure: Array, slopes: Slopes, grid: Grid) -> tuple[f
 
 
 def _in_phase(load: Array) -> Array:
-    """Return the squares of the sums along lines, summed over the lines of each axis and diagonal.
-
-    Each counts with the square of its share of what it would be if all of the line's loads were equal.
-    """
+    """Return squared sums along lines of each axis and diagonal, by the squared share of equal loads."""
     i, j = (np.arange(count) for count in load.shape)
     found = []
     for lines in (i[:, None] + 0 * j, 0 * i[:, None] + j, i[:, None] + j, i[:, None] - j + len(j)):

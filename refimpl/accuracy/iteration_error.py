@@ -101,11 +101,7 @@ def _approach_interval(state: State) -> float:
 
 
 def _peak_misfit(problem: Problem, state: State) -> float:
-    """Return the pressure (Pa) that closes the clearance of the highest elements, each by itself.
-
-    Those are elements with half of the maximum pressure; at edges clearances are larger, and no peak is
-    there.
-    """
+    """Return the pressure (Pa) that closes the clearance of the highest elements, each by itself."""
     if state.max_pressure == 0:
         return 0.0
     misfit = float(np.abs(state.v[state.pressure >= 0.5 * state.max_pressure] - state.approach).max())

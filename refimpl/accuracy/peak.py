@@ -137,10 +137,7 @@ def on_crest(field: Array, surface: Array, grid: Grid, share: float = _CREST_RIV
 
 
 def _peak(padded: Array, contact: Mask, least: float) -> Peak:
-    """Return the peak of all maxima of at least ``least``, in a field with a frame of `_REACH` elements.
-
-    ``contact`` has that frame too, without contact beyond a free border.
-    """
+    """Return the peak of all maxima of at least ``least``; fields have a frame of `_REACH` elements."""
     i, j = _maxima(padded, _REACH, least)
     heights, drops, rests = _parabolas(_lines(padded, i, j, _REACH))
     around = contact[i - 1, j] & contact[i + 1, j] & contact[i, j - 1] & contact[i, j + 1]

@@ -192,10 +192,7 @@ def predicted_size(
     grid_sizes: Sequence[int],
     data: DataShares | None = None,
 ) -> int | None:
-    """Return the coarsest size whose predicted bar is short enough; None if none is.
-
-    The data's part is known on every grid, that of neglected terms stays, the others fall by their order.
-    """
+    """Return the coarsest size whose predicted bar is short enough; None if none is."""
     fine, data = results[-1], data or DataShares()
     found, estimate = fine.numbers[quantity], estimates(results)[quantity]
     parts, last, order = fine.parts.get(quantity, {}), longer_side(fine), _own_order(results, quantity)

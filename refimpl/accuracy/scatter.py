@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import scipy
 
-from refimpl.accuracy.bayesian_line import DEFAULT_ORDER, Estimate
+from refimpl.accuracy.bayesian_line import DEFAULT_ORDER, Intercept
 from refimpl.accuracy.constants import constant, table
 from refimpl.accuracy.contact_edge import KINDS, single_element_share
 from refimpl.accuracy.grid_features import GridFeatures
@@ -56,10 +56,7 @@ def area_scatter(result: GridFeatures) -> float:
 
 
 def straight_scatter(result: GridFeatures) -> float:
-    """Return the standard deviation of the area by straight edges along the grid (m^2).
-
-    Symmetric ones come in and out together.
-    """
+    """Return the deviation of the area by straight edges (m^2); symmetric ones count together."""
     squares, together = result.straight.squares, min(result.symmetry_multiplicity, result.straight.runs)
     return STRAIGHT_SCATTER * math.sqrt(squares * max(together, 1)) * result.grid.element_area
 
@@ -70,10 +67,7 @@ def straight_share(result: GridFeatures) -> float:
 
 
 def edge_scatter(results: Sequence[GridFeatures]) -> Array:
-    """Return each grid's edge fraction to the power 3/2, the order at which an area's scatter falls.
-
-    On a disc that is about the standard deviation of the area over the area; that of straight edges is added.
-    """
+    """Return each grid's edge fraction to the power 3/2, with the share of straight edges in squares."""
     along = [straight_share(result) for result in results]
     around = np.array([min(1.0, result.edge_fraction) for result in results]) ** DEFAULT_ORDER
     return np.hypot(around, along)
@@ -103,11 +97,11 @@ def plastic_sizes(fine: GridFeatures) -> Array:
     return np.array([counted, along, edge, edge * single_element_share(edge, area) ** 2])
 
 
-def plastic_area(fine: GridFeatures) -> Estimate:
+def plastic_area(fine: GridFeatures) -> Intercept:
     """Return the area at the hardness, to which elements that yield in part add a share of its edge."""
     area, lack = fine.numbers.get("plastic_area", 0.0), PLASTIC_LACK * max(fine.plastic_edge, 0.0)
     deviation = float(np.hypot.reduce(PLASTIC_SCATTER * plastic_sizes(fine)))
-    return Estimate(area + lack, deviation * float(scipy.special.stdtrit(PLASTIC_FREEDOM, 0.975)))
+    return Intercept(area + lack, deviation * float(scipy.special.stdtrit(PLASTIC_FREEDOM, 0.975)))
 
 
 def slope_scatter(results: Sequence[GridFeatures], name: str = "slope_sampling_error") -> Array:

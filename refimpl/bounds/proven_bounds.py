@@ -101,11 +101,7 @@ NO_BOUND_PERIODIC = "a periodic scene's approach does not bound its mean pressur
 
 
 def proven_bounds(problem: Problem, pressure: Array, traction: Array, slopes: Slopes) -> Bounds:
-    """Return bounds for any pressure and traction (Pa) of the problem's shape, at these slopes.
-
-    Costs some tens of products with ``a``. Where nothing can be proven all are infinite, and ``unproven``
-    says why.
-    """
+    """Return bounds for any pressure and traction (Pa) at these slopes; infinite where none is proven."""
     if problem.terms.slope_correction:
         return _none(problem, NO_BOUND_CORRECTED)
     yields = bool(pressure.max() >= problem.cap)

@@ -74,10 +74,7 @@ class Options:
             raise InputError("method", self.method, "dense or fft for a periodic scene")
 
     def _check_plastic(self) -> None:
-        """Take the scene's choice where there is no other; what cannot have a cap is elastic without one.
-
-        Refuse a cap without a hardness, by the paper's scheme, and under a load that no contact can bear.
-        """
+        """Take the scene's choice where there is no other, elastic where no cap can be; refuse the rest."""
         scene, plastic = self.scene, self.requested.plastic
         plastic = scene.plastic if plastic is None else plastic
         hardness = scene.materials.softer_hardness

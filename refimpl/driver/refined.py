@@ -148,10 +148,7 @@ class _Refinement:
         return size, refusal or ("" if enough else f"{size} elements a side do not suffice")
 
     def features_at(self, M: int) -> GridFeatures:
-        """Solve on a grid, no coarser than the last.
-
-        Raises `Unfinished` where the solve does not converge and that on a coarser grid did.
-        """
+        """Solve on a grid, no coarser than the last; raise `Unfinished` where only coarser ones converge."""
         start = self.last if self.last is not None and self.last.status in _CONVERGED else None
         guess = None
         if start is not None:

@@ -32,10 +32,7 @@ class Window:
 
     @classmethod
     def around(cls, where: NDArray[np.bool_], margin: int) -> Window:
-        """Return the bounding box of the true elements, widened by ``margin`` within the grid.
-
-        Where no element is true it is the whole grid.
-        """
+        """Return the true elements' bounding box, ``margin`` wider; the whole grid where none is true."""
         rows, columns = np.flatnonzero(where.any(axis=1)), np.flatnonzero(where.any(axis=0))
         if not rows.size:
             return cls.full((where.shape[0], where.shape[1]))
@@ -47,10 +44,7 @@ class Window:
         )
 
     def filling(self, shape: Shape) -> Window:
-        """Return the window widened within a grid as far as its convolution costs no more.
-
-        A window of n elements along an axis is padded to the least fast length of ``2 n - 1`` or more.
-        """
+        """Return the window widened within a grid as far as its transform's fast length goes."""
         return Window(*_filled(self.i0, self.i1, shape[0]), *_filled(self.j0, self.j1, shape[1]))
 
     def interior(self, shape: Shape) -> Window:

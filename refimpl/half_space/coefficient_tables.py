@@ -90,11 +90,7 @@ def shipped_table(layout: Layout) -> dict[str, Array]:
 
 
 def read_table(text: str, layout: Layout) -> dict[str, Array]:
-    """Return the axes and the arrays of a table's JSON text, by name.
-
-    Raises `InputError` for another version, for an axis that is missing, does not rise or is incomplete, and
-    for arrays of another shape.
-    """
+    """Return a table's axes and arrays by name; `InputError` for another version, axis or shape."""
     document: dict[str, Any] = json.loads(text)
     if document.get("version") != layout.version:
         raise InputError(layout.file, document.get("version"), f"version {layout.version}")

@@ -149,10 +149,7 @@ def _without_index(cells: Cells) -> Cells:
 
 
 def _refuse_thousands(cells: Cells) -> None:
-    """Raise `InputError` for 1,320 where no comma of the table is surely a decimal one, as of 1,32 or 0,320.
-
-    The same holds for points, but where the table has no comma they are decimal ones.
-    """
+    """Refuse 1,320 where no comma is surely a decimal one; likewise points, where there are commas."""
     numbers = [(name, cell) for name, row in cells for cell in row if _MARKED.fullmatch(cell)]
     commas = [(name, cell) for name, cell in numbers if "," in cell]
     points = [(name, cell) for name, cell in numbers if "." in cell]

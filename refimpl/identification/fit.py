@@ -136,10 +136,7 @@ def linear_fit(
     away: float,
     passes: int,
 ) -> Fit:
-    """Fit the linear models of all rows by generalised least squares, within the bounds and without.
-
-    One row may be dropped (see above).
-    """
+    """Fit the linear models of all rows within the bounds and without; one row may be dropped."""
     every = np.arange(len(rows))
     found = _linear_fit(rows, responses, between, scattered, every)
     wrong = int(np.argmax(np.abs(found.deleted)))
@@ -205,10 +202,7 @@ def _deleted(weights: Array, hat: Array, misfit: Array) -> Array:
 
 
 def _bounded(design: Array, wanted: Array, free: Array, scale: Array) -> Array:
-    """Return the least-squares solution within the bounds: tau, beta >= 0, and the longest step.
-
-    All in units of ``scale``; ``free`` is the minimum without bounds.
-    """
+    """Return the least squares within the bounds, in units of ``scale``; ``free`` is without them."""
     low = np.concatenate([np.zeros(BOUNDED), -_LONGEST / scale[BOUNDED:]])
     high = np.concatenate([np.full(BOUNDED, np.inf), _LONGEST / scale[BOUNDED:]])
     if np.all((free >= low) & (free <= high)):
@@ -217,11 +211,7 @@ def _bounded(design: Array, wanted: Array, free: Array, scale: Array) -> Array:
 
 
 def shares(rows: Sequence[Row], fitted: Fit, inputs: Sequence[Mapping[str, float]]) -> dict[str, Array]:
-    """Return the parts of the covariance of all parameters by source.
-
-    measurement, numerical, contact edge, realisations where there are several, and each toleranced input,
-    which all rows share.
-    """
+    """Return the covariance's parts: measurement, bars, realisations, and each input, which rows share."""
     parts = {"measurement": np.diag([row.u_mu**2 for row in rows]), **_bars(fitted.responses)}
     for name in inputs[0] if inputs else ():
         change = np.array([row[name] for row in inputs]) / COVERAGE

@@ -86,10 +86,7 @@ class Forward:
         self._memory, self._key, self._report = memory, key, report
 
     def respond(self, scene: Scene, theta: Array, tolerances: Mapping[str, float] | None = None) -> Response:
-        """Return the response of a scene at parameters ``(tau, beta, ln p, ...)``.
-
-        Raises `InputError` as `refimpl.solve` does, `NotConverged` where the solve does not converge.
-        """
+        """Return the response at ``(tau, beta, ln p, ...)``; raises as `refimpl.solve`, or `NotConverged`."""
         if self._report is not None:
             self._report(f"solve {self.solves + 1}: {scene.load:.4g} N")
         friction = np.maximum(theta[: len(NAMES)], least_parameters(scene))

@@ -122,10 +122,7 @@ def _law(result: Identification) -> Iterator[str]:
 
 
 def _limits(responses: Sequence[Response]) -> list[str]:
-    """Return the warnings of the solves, one of each kind: texts that differ in their numbers alone are one.
-
-    Where contact of one row is at the hardness, the plasticity index of the others says nothing new.
-    """
+    """Return the solves' warnings, texts that differ in numbers once; no index beside contact at H."""
     kinds = {re.sub(r"[\d.]+", "", text): text for response in responses for text in response.warnings}
     plastic = any(response.plastic for response in responses)
     return [text for text in kinds.values() if not (plastic and text.startswith(Limit.PLASTICITY))]

@@ -101,10 +101,7 @@ def _symmetric_table(kernel: Kernel, n: int, m: int, edge: float, known: Array |
 
 
 def _begun(kernel: Kernel, n: int, m: int, dx: float, dy: float, known: Array | None) -> tuple[Array, int]:
-    """Return a table of NaN, so that no gap goes unseen, with its first corner, and that one's size.
-
-    The corner is what is known, or as much as the closed form serves.
-    """
+    """Return a table of NaN with its first corner, known or by the closed form, and that one's size."""
     table = np.full((n, m), np.nan)
     if known is not None and min(known.shape) >= _NEAR_COUNT:
         rows, columns = min(known.shape[0], n), min(known.shape[1], m)

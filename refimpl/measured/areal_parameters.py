@@ -115,10 +115,7 @@ class Autocorrelation:
         return x, y
 
     def distances(self, level: float) -> Array:
-        """Return the distance (m) of the first fall to ``level``, in each of DIRECTIONS.
-
-        Direction k is at k pi / DIRECTIONS to x. NaN where it does not fall so far within the lags.
-        """
+        """Return distances (m) of the first fall to ``level`` at k pi / DIRECTIONS to x; NaN for none."""
         angle = np.arange(DIRECTIONS) * math.pi / DIRECTIONS
         reach = min(n // 2 * edge for n, edge in zip(self.values.shape, self.pixel, strict=True))
         r = np.arange(0.0, reach, min(self.pixel) / 2.0)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, unreadable
 from refimpl.grid import Array
 from refimpl.measured.reading import MAX_POINTS, Overrides
 
@@ -19,25 +19,22 @@ NAMES_SHOWN, NAME_SHOWN = 20, 40  # channels in a message, and characters of eac
 
 
 def choose(path: Path, form: str, reader: Any, given: Overrides) -> tuple[int, Any]:
-    """Return the channel of the given name or number, by default the library's first map of heights.
-
-    Of several arrays it is the only one that is named as heights are. Raises InputError with all there are.
-    """
+    """Return the channel of a name or number, by default the first map of heights. Raises `InputError`."""
     channels = list(reader.channels)
     names = [str(c.name) for c in channels]
     maps = [] if given.channel is not None else _maps(channels, reader, form in ARRAYS)
     if given.channel is None and not maps and len(names) != 1:
-        raise InputError("path", str(path), f"a map of heights (found: {_listed(names) or 'no channel'})")
+        raise unreadable(path, f"a map of heights (found: {_listed(names) or 'no channel'})")
     sure = maps and (form not in ARRAYS or len(maps) == 1)
     index = maps[0] if sure else chosen(path, names, given.channel)
     channel = channels[index]
     if channel.dim != 2 or not channel.is_uniform:
         what = "a line scan" if channel.dim == 1 else "no regular map"
-        raise InputError("path", str(path), f"a map of heights (channel {names[index]!r} is {what})")
+        raise unreadable(path, f"a map of heights (channel {names[index]!r} is {what})")
     if not _is_height(channel):
         raise InputError("channel", given.channel, f"a channel of heights in {path.name}: {_listed(names)}")
     if math.prod(channel.nb_grid_pts) > MAX_POINTS:
-        raise InputError("path", str(path), f"heights on a grid of at most {MAX_POINTS} points")
+        raise unreadable(path, f"heights on a grid of at most {MAX_POINTS} points")
     return index, channel
 
 

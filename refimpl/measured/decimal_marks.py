@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from refimpl.errors import InputError
+from refimpl.errors import unreadable
 
 _GROUPED = r"[-+]?[1-9]\d{0,2}[.,]\d{3}"
 _THOUSANDS, _ROW = re.compile(_GROUPED), re.compile(rf"(?:{_GROUPED}[\s;]+)*{_GROUPED}[\s;]*")
@@ -29,12 +29,12 @@ def refuse_ambiguous(
     else:
         found = _grouped(rows(), separator)
     if found:
-        raise InputError("path", str(path), f"decimal points (is {found!r} a thousand times as much?)")
+        raise unreadable(path, f"decimal points (is {found!r} a thousand times as much?)")
     if separator == "," and not any("." in row for row in sample):
         zeros = any(len(cell) > 1 and cell[0] == "0" for row in sample for cell in row.split(","))
         if zeros or (any(", " in row for row in sample) and any(map(_TIGHT.search, sample))):
             said = f"are the commas in {sample[0][:40]!r} separators or decimal marks?"
-            raise InputError("path", str(path), f"decimal points, or semicolons between entries ({said})")
+            raise unreadable(path, f"decimal points, or semicolons between entries ({said})")
 
 
 def _grouped(rows: Iterator[str], separator: str | None) -> str:

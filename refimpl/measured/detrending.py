@@ -89,10 +89,7 @@ Form = Polynomial | Curved
 
 
 def _cap(tilted: Array, squared: Array, slope: float, curvature: float) -> Array:
-    """Return the height w of a sphere (circle) of that curvature k through the origin, of that slope there.
-
-    From ``k (r^2 + w^2) = 2 (w - g.x) / s``, s = sqrt(1 + g^2); the plane g.x where k = 0.
-    """
+    """Return a sphere's height w: ``k (r^2 + w^2) = 2 (w - g.x) / sqrt(1 + g^2)``; g.x where k = 0."""
     inverse = 1.0 / math.sqrt(1.0 + slope**2)
     known = curvature * squared + 2.0 * inverse * tilted
     return np.asarray(known / (inverse + np.sqrt(np.maximum(inverse**2 - curvature * known, 0.0))))

@@ -117,10 +117,7 @@ class Inspection:
 
     @cached_property
     def _psd_slope(self) -> tuple[float, float]:
-        """Slope of the spectrum below the shortest 1/e length, its deviation; NaN where holes decide it.
-
-        Holes decide where the slope without the spectrum of `fill_error` differs by more than its deviation.
-        """
+        """Slope below the shortest 1/e length, its deviation; NaN where `fill_error` moves it by more."""
         away = self.autocorrelation.distances(math.exp(-1.0))
         if not np.isfinite(away).any():
             return math.nan, math.nan

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, unreadable
 from refimpl.measured.channels import (
     ARRAYS,
     choose,
@@ -54,9 +54,9 @@ def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
         except Exception as error:  # other people's parsers raise anything; the next format may fit
             failures.append(f"{name}: {first_line(error)}")
     if kind := kind_of(path, head):
-        raise InputError("path", str(path), kind)
+        raise unreadable(path, kind)
     likely = failures[0] if failures else f"none of SurfaceTopography {library.__version__}'s formats fits"
-    raise InputError("path", str(path), f"a file that can be read ({likely})")
+    raise unreadable(path, f"a file that can be read ({likely})")
 
 
 def claimed_by_magic(path: Path, head: bytes) -> bool:
@@ -115,10 +115,7 @@ def _quietly() -> Iterator[list[warnings.WarningMessage]]:
 def _record(
     path: Path, form: str, found: Any, sized: bool, given: Overrides, said: list[warnings.WarningMessage]
 ) -> RawHeights:
-    """Return the library's map as it lies here: heights (m), pixel, unit, and the library's words.
-
-    ``sized``: the file states its size.
-    """
+    """Return the library's map: heights (m), pixel, unit, words; ``sized``: the file states its size."""
     heights = checked(path, np.ma.filled(np.ma.asarray(found.heights(), dtype=np.float64), np.nan))
     metre, pixel = None, None
     if found.unit is not None:
@@ -155,11 +152,11 @@ def _of_container(library: ModuleType, path: Path, given: Overrides) -> RawHeigh
         k, j, member = members[chosen(path, [m.name for *_, m in members], given.channel)]
         found = reader.container(k)[j]
         if found.dim != 2 or not found.is_uniform:
-            raise InputError("path", str(path), f"a map of heights ({member.name!r} is a line scan)")
+            raise unreadable(path, f"a map of heights ({member.name!r} is a line scan)")
         stream = member.open
         form = library.IO.detect_format(stream)
         if form == "asc" and stream().read(len(WYKO)) in (WYKO, WYKO.encode()):
-            raise InputError("path", str(path), f"{member.name!r} unpacked: Wyko's text is read on its own")
+            raise unreadable(path, f"{member.name!r} unpacked: Wyko's text is read on its own")
         reading = _record(path, form, found, True, given, said)
     names = tuple(m.name for *_, m in members)
     prepared = found.info.get("detrend_mode") or "none"
@@ -177,7 +174,7 @@ def library_for(path: Path) -> ModuleType:
         allowed = (
             'a plain .npy or .csv, or the package that reads it (pip install ".[instrument]" in a checkout)'
         )
-        raise InputError("path", str(path), allowed) from error
+        raise unreadable(path, allowed) from error
     logging.getLogger("SurfaceTopography").addHandler(logging.NullHandler())  # nothing on stderr
     module: ModuleType = SurfaceTopography
     return module

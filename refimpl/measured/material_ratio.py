@@ -17,10 +17,7 @@ def material_ratio(z: Array, classes: int = CLASSES) -> tuple[Array, Array]:
 
 
 def core_parameters(z: Array) -> dict[str, float]:
-    """Return Sk, Spk, Svk (m): depth of the core, and reduced peaks above and dales below it.
-
-    The core's line is fitted over the 40 % of the curve whose secant is the flattest.
-    """
+    """Return Sk, Spk, Svk (m) by the line over the flattest 40 % of the curve (ISO 25178-2)."""
     ratio, height = material_ratio(z)
     width = round(CORE * CLASSES)
     first = int(np.argmin(height[:-width] - height[width:]))

@@ -19,7 +19,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TypeVar
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, unreadable
 from refimpl.operating_system import limit_process
 
 T = TypeVar("T")
@@ -50,7 +50,7 @@ def read_elsewhere(path: Path, load: Callable[[], T]) -> T:
         except (EOFError, OSError, pickle.UnpicklingError):
             status = _end()
             allowed = f"a file that can be read (its reader crashed or took too long: exit status {status})"
-            raise InputError("path", str(path), allowed) from None
+            raise unreadable(path, allowed) from None
         except BaseException:  # an interrupt: the answer would be taken for that to the next file
             _end()
             raise

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from refimpl.errors import InputError, printable, require_size, size_text
+from refimpl.errors import InputError, printable, require_size, size_text, unreadable
 from refimpl.grid import Array
 
 T = TypeVar("T")
@@ -109,7 +109,7 @@ def read_or_refuse(path: Path, load: Callable[[], T]) -> T:
     except InputError:
         raise
     except Exception as error:  # other people's parsers raise anything
-        raise InputError("path", str(path), f"a file that can be read ({first_line(error)})") from error
+        raise unreadable(path, f"a file that can be read ({first_line(error)})") from error
 
 
 def first_line(error: object) -> str:

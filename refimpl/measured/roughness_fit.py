@@ -196,8 +196,7 @@ def _estimates(
 ) -> tuple[dict[str, Array], tuple[float, float]]:
     """Return the estimates from drawn maps, by name, and the misfit of ``z`` to their spectra.
 
-    Maps of more than 512 points an axis are drawn with every second, third ... point; where waves would be
-    lost by that, a part of the map is drawn, and the scatter goes down with the root of the area.
+    Maps of more than 512 points an axis are thinned; where that loses waves a part of the map is drawn.
     """
     shape = z.shape
     thin = max(1, math.ceil(max(shape) / _LARGEST))

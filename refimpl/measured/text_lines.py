@@ -17,7 +17,8 @@ WYKO = "Wyko ASCII Data File Format"
 _WYKO_BLOCK = re.compile(r"(?!bad\b)([a-z]\w*)\s+\d+\s+\d+\b", re.IGNORECASE)
 WYKO_HEIGHTS = ("RAW_DATA", "OPD", "Raw", "SAMPLE_DATA")  # others are intensities and processed arrays
 
-# The library's words, and those of Gwyddion and of profilometers in German, French and Spanish
+# The library's words, and those of Gwyddion and of profilometers in German, French and Spanish. Version
+# 1.27.1 knows most of Gwyddion's, but only with the unit behind the value and a decimal point.
 _WORDS = {
     "Channel": "channel|kanal|canal",
     "Width": "width|breite|largeur|anchura|ancho",

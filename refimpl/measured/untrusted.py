@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from refimpl.errors import MOST, InputError
+from refimpl.errors import MOST, InputError, unreadable
 from refimpl.grid import Array
 from refimpl.measured.reader_process import read_elsewhere
 from refimpl.measured.reading import read_or_refuse
@@ -80,4 +80,4 @@ def _refuse_external_data(path: Path) -> None:
         file.visititems(see_object)
     if found:
         allowed = f"an HDF5 file that holds all its data ({found[0][:60]!r} is in another file)"
-        raise InputError("path", str(path), allowed)
+        raise unreadable(path, allowed)

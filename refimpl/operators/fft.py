@@ -164,10 +164,7 @@ class FFTInfluence(Convolution):
         return even_hat(self._quarter("normal"), threads(points))
 
     def _quarter(self, kind: str, axis: int = 0) -> Array:
-        """Return a kernel (m) at offsets from 0 to half of each circle, tangential ones along an axis.
-
-        Rows are offsets along that axis.
-        """
+        """Return a kernel (m) at offsets from 0 to half of each circle; rows along the axis of traction."""
         halves = [n // 2 + 1 for n in self._padded]
         table = self._unit_quarter(kind, (halves[axis], halves[1 - axis]), self._aspect(axis))
         return table * self.grid.spacings[axis]
@@ -280,10 +277,7 @@ def _farthest(source: Window, target: Window) -> tuple[int, int]:
 
 
 def _circle(n: int, lowest: int, highest: int) -> NDArray[np.int_]:
-    """Return the offsets around a circle that holds ``lowest ... highest`` once, 0 at its start.
-
-    Even, but for the point opposite 0, where there is room: an even kernel then has a real transform.
-    """
+    """Return a circle's offsets that hold ``lowest ... highest``, 0 first, even where there is room."""
     if max(-lowest, highest) <= n // 2:
         lowest = min(lowest, 1 - n // 2)
     return lowest + (np.arange(n) - lowest) % n

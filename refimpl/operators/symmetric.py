@@ -18,10 +18,7 @@ def even_hat(quarter: Array, workers: int) -> Array:
 
 
 def odd_hat(along_x: Array, along_y: Array | None, workers: int) -> Complex:
-    """Return the symbols of kernels odd along the first axis, and the second (if any), together.
-
-    Opposite 0 they are taken to be zero where they are odd: the caller sees to it that nobody needs that.
-    """
+    """Return the symbols of kernels odd along the first axis and the second; zero opposite 0."""
     sines = _mirrored(fourier.odd_plane(along_x, workers), 1.0)
     if along_y is not None:
         sines += _mirrored(fourier.odd_plane(along_y.T, workers).T, -1.0)

@@ -65,11 +65,7 @@ class ExpectedContact:
 
     @property
     def edge_error(self) -> float:
-        """Relative error of A by whole elements along the edges of the patches.
-
-        On a circle of radius r the excess of `refimpl.model.forces.perimeter_corrected_area` is 0.30 spacing
-        / r.
-        """
+        """Relative error of A by whole elements at the patches' edges: on a circle 0.30 spacing / r."""
         return 8 / math.pi * EDGE_SHARE * math.sqrt(math.pi * self.patches / self.elements)
 
 
@@ -142,10 +138,7 @@ def _gradient_squared(problem: Problem) -> Array:
 def solved_contact(
     problem: Problem, pressure: Array, clearance: Array, before: ExpectedContact
 ) -> ExpectedContact:
-    """Return the description of a solved contact by its pressure (Pa) and clearance (m).
-
-    What follows from the heights alone is that of ``before``.
-    """
+    """Return a solved contact's description by pressure (Pa), clearance (m), and ``before``'s heights."""
     contact: Mask = pressure > 0
     loaded = pressure[contact]
     total = float(loaded.sum())
@@ -156,10 +149,7 @@ def solved_contact(
 def _described(
     problem: Problem, contact: Mask, loads: Array, clearance: Array, mean_pressure: float, pressure: float
 ) -> dict[str, Any]:
-    """Return what depends on the contact set; ``loads`` weighs its elements, in their order.
-
-    Sums are not BLAS's: bits vary there.
-    """
+    """Return what depends on the contact set, weighted by ``loads``. Bits vary in BLAS's sums."""
     window = problem.grid.window_around(contact, margin=1)
     near, where = problem.windowed(window), contact[window.slices]
     lower, upper = near.heights
@@ -188,11 +178,7 @@ def _on(where: Mask, problem: Problem, heights: Array) -> tuple[Array, Array]:
 
 
 def _symmetries(coarse: Problem, problem: Problem) -> tuple[bool, bool]:
-    """Return whether both surfaces are their own images after half a turn, and across the sliding line.
-
-    So they are if gap and mean surface are; the coarse heights rule most scenes out before all heights are
-    compared.
-    """
+    """Return whether both surfaces are images after half a turn, and across the sliding line."""
     seen = [z for p in (coarse, problem) for z in (p.gap, p.mean_surface)]
     return all(_is_image(z, z[::-1, ::-1]) for z in seen), _mirrored(problem.direction, seen)
 

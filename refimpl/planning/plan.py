@@ -129,10 +129,7 @@ def estimated_memory(method: Method, grid: Grid, *, extent: float = 0.0) -> int:
 
 
 def memory_of(method: Method, grid: Grid, *, extent: float = 0.0) -> int:
-    """Return the `estimated_memory`; raise `InputError` if it exceeds the free memory or the dense method.
-
-    Up to `UNREAD` bytes are taken to be free.
-    """
+    """Return the `estimated_memory`; `InputError` if it exceeds the free memory or the dense method."""
     if method == "dense" and grid.elements > LARGEST_DENSE:
         raise InputError("grid", max(grid.shape), f"at most {LARGEST_DENSE} elements by method dense")
     memory = estimated_memory(method, grid, extent=extent)

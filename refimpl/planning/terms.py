@@ -66,10 +66,7 @@ def choose(
     *,
     for_mu: bool = False,
 ) -> tuple[Term, ...]:
-    """Return all terms in a fixed order; the effects of the negligible ones add up to at most the budget.
-
-    Where the budget is one of mu (``for_mu``) and there is no friction, slopes are all of mu and are kept.
-    """
+    """Return all terms; negligible ones add up to the budget. Frictionless slopes are all of mu."""
     choice = _Choice(problem, Scales(contact, problem.pair, problem.friction), requested)
     return choice.terms(budget, for_mu)
 

@@ -91,10 +91,7 @@ def sample_scene(kind: str = "flat", choice: int = 0) -> Table:
 
 
 def allowed_by(read: Callable[[Table], object], table: Table, key: str, wrong: object = _WRONG) -> str:
-    """Return what the refusal of a wrong value of ``key`` allows.
-
-    Raises LookupError where ``read`` takes that value, or refuses another key.
-    """
+    """Return what the refusal of a wrong value allows; LookupError where there is no such refusal."""
     try:
         read(table | {key: wrong})
     except InputError as refused:

@@ -39,10 +39,7 @@ def parameters(scene: Scene) -> dict[str, float]:
 
 
 def with_parameter(scene: Scene, name: str, value: float) -> Scene:
-    """Return the scene with one parameter changed.
-
-    Raises `InputError` for a name that is none of `parameters(scene)`, and for a value out of range.
-    """
+    """Return the scene with one parameter changed; `InputError` for an unknown one or a bad value."""
     require_one_of("parameter", name, parameters(scene))
     head, _, key = name.rpartition(".")
     if not head:

@@ -36,10 +36,7 @@ def resolution(scene: Scene, grid: Grid, accuracy: float) -> Resolution | None:
 
 
 def unresolved_slope(scene: Scene, grid: Grid) -> float:
-    """Return the share of the random roughness's rms gradient in waves that the grid does not hold.
-
-    A rough contact area goes as the inverse of the gradient (Bush, Gibson and Thomas 1975).
-    """
+    """Return the share of the rms gradient that the grid does not hold (Bush, Gibson and Thomas 1975)."""
     details = _details(scene, max(grid.spacings))
     squares = [detail.gradient**2 for detail in details]
     missed = sum(detail.unresolved * square for detail, square in zip(details, squares, strict=True))

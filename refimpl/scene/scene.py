@@ -208,18 +208,12 @@ class Scene:
         return math.ceil(max(self.lengths) / min(self.lengths) / _SLENDER)
 
     def refined(self, M: int) -> Grid:
-        """Return a grid of a refinement: the same element ratio for every M, nearly 1.
-
-        M elements along the longer side, a multiple of ``16 slenderness``.
-        """
+        """Return M elements along the longer side, a multiple of ``16 slenderness``: one ratio for all M."""
         nx, ny = self.grid(_FAVOURED * self.slenderness).shape
         return self.grid((nx * M // max(nx, ny), ny * M // max(nx, ny)))
 
     def check_approach(self, approach: float) -> None:
-        """Raise `InputError` unless a prescribed approach (m) is finite, and below 0 in a periodic scene.
-
-        There it counts from the mean planes.
-        """
+        """Raise `InputError` unless an approach (m) is finite, and below the mean planes if periodic."""
         if self.periodic:
             require_number("approach", approach, "an approach below 0 m (mean planes)", below=0)
         require_number("approach", approach, "a finite approach in m")

@@ -146,10 +146,7 @@ def _model_form(solution: Solution, derivatives: Sensitivity) -> dict[str, dict[
 def _half_space(
     scene: Scene, solution: Solution, sources: Mapping[str, Mapping[str, float]]
 ) -> dict[str, float]:
-    """Return the excess of the undeformed surfaces' error over "coefficients"; infinite where a solve fails.
-
-    Both describe one cause, from the surfaces between contacts and from those in contact: the larger counts.
-    """
+    """Return what the surfaces' error exceeds "coefficients" by; infinite where a solve fails."""
     try:
         error = half_space_error(scene, solution)
     except NotConverged:
@@ -159,10 +156,7 @@ def _half_space(
 
 
 def _plasticity(scene: Scene, solution: Solution) -> dict[str, float]:
-    """Return each number's difference to the capped solution; infinite where none converges.
-
-    Empty where no pressure exceeds the hardness, and where none is given.
-    """
+    """Return differences to the capped solution, infinite where none converges; empty below H."""
     hardness, problem = solution.details.problem.pair.softer_hardness, solution.details.problem
     if hardness is None or solution.max_pressure <= hardness or problem.terms.plastic:
         return {}
@@ -176,10 +170,7 @@ def _plasticity(scene: Scene, solution: Solution) -> dict[str, float]:
 
 
 def _cosines(solution: Solution, derivatives: Sensitivity) -> dict[str, float]:
-    """Change of each number between printed and exact resultants of the same tractions.
-
-    A normal force that the exact sum finds too large or too small is a load misjudged by as much.
-    """
+    """Change of each number between printed and exact resultants; of N, as a misjudged load."""
     exact = facet_resultants(
         solution.pressure, solution.traction, solution.slopes, solution.grid.element_area
     )

@@ -66,10 +66,7 @@ class Sensitivity:
     contact_stiffness: float = math.nan
 
     def relative(self, number: str, parameter: str) -> float:
-        """Return ``(p / q) dq/dp``: the per cents that q changes by for one per cent of p.
-
-        Raises `InputError` for a number that is zero, and for a name that is none.
-        """
+        """Return ``(p / q) dq/dp``; `InputError` for a number that is zero or a name that is none."""
         require_one_of("number", number, self.derivatives)
         require_one_of("parameter", parameter, self.parameters)
         derivative, found = self.derivatives[number][parameter], self.found[number]
@@ -111,10 +108,7 @@ def sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = 
 
 
 def grid_sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = None) -> Sensitivity:
-    """Return the derivatives of one grid: their scatter lacks the difference to another one.
-
-    Raises as `sensitivity` does for solves that do not converge.
-    """
+    """Return one grid's derivatives, without the scatter between grids. Raises as `sensitivity`."""
     base = solution.details.problem.with_terms(_terms(solution))
     active = solution.contact & ~solution.details.excluded
     fixed = FixedContact(base, solution.pressure, active, solution.slopes)
@@ -169,10 +163,7 @@ def _check(scene: Scene, solution: Solution) -> None:
 
 
 def _terms(solution: Solution) -> Terms:
-    """Return the solution's terms, with all that shear moves unless the user forces it out.
-
-    Where two bodies' compliances cancel it is left out of the solve, and comes in with the first change.
-    """
+    """Return the solution's terms, with all that shear moves unless the user forces it out."""
     requested = solution.plan.requested
     coupled, tilted = (choice is not False for choice in (requested.coupled, requested.tilted))
     return replace(solution.details.problem.terms, coupled=coupled, tilted=tilted)

@@ -29,10 +29,7 @@ _RADIUS = 3.0  # elements: whole elements add 0.30 / r to the area of a circle o
 
 
 def model_warnings(evidence: Evidence) -> tuple[ModelWarning | Notice, ...]:
-    """Return a warning for every limit that a solution exceeds, and notes on yield; none without contact.
-
-    The first names why a solve did not converge, if that is known.
-    """
+    """Return the cause of a failure, a warning for every limit exceeded, notes; none without contact."""
     cause = cause_of_failure(evidence)
     first = () if cause is None else (Notice(cause),)
     if not evidence.state.contact.any():
@@ -289,10 +286,7 @@ def _active_set(evidence: Evidence) -> ModelWarning | None:
 
 
 def _neglected(evidence: Evidence) -> list[ModelWarning | None]:
-    """Return the neglected terms whose effect, estimated again from the solution, exceeds the demand.
-
-    Without friction the plan may allow more than the demand: a share of the grid's own error.
-    """
+    """Return the neglected terms whose effect, by the solution, exceeds the demand and the budget."""
     demand = max(evidence.plan.demand, evidence.plan.budget)
     return [
         ModelWarning(

@@ -177,10 +177,7 @@ class Numbers:
         return {**parts, **{name: {"discretisation": None} for name in unknown if name in parts}}
 
     def error(self, name: str) -> float | None:
-        """Return the error bar of a number, in its unit; inf where unbounded, None where no rule gives one.
-
-        Raises `InputError` for an unknown name.
-        """
+        """Return a number's error bar; inf where unbounded, None without a rule. Raises `InputError`."""
         require_one_of("error", name, QUANTITIES)
         quantity = QUANTITIES[name]
         return None if quantity.rule is None else quantity.rule(self, quantity)

@@ -60,10 +60,7 @@ class Trace:
 
 
 def solve_paper(problem: Problem, tolerance: float, counter: Counter) -> tuple[State, Trace]:
-    """Return the certified state and the finest grid's trace.
-
-    ``tolerance`` is that of the load; the pressure's is a tenth of it.
-    """
+    """Return the certified state and the finest grid's trace, to a tolerance of the load."""
     pressure: Array | None = None
     approach = problem.approach
     traces: list[Trace] = []

@@ -165,10 +165,7 @@ class TauResult(NamedTuple):
 
 
 def iterate(solver: TauSolver, problem: Problem, tolerance: float) -> TauResult:
-    """Solve by the rule; the solver is left at the last state.
-
-    A state before the last needs only its contact set, so its solve may end early.
-    """
+    """Solve by the rule; states before the last may end early. The solver is left at the last state."""
     first = first_set(problem)
     if isinstance(first, FixedSet):
         solver.solve(tolerance, first)
@@ -209,10 +206,7 @@ def promising(problem: Problem, operator: Influence, pressure: Array, excluded: 
 def _holds_once_more(
     solver: TauSolver, problem: Problem, tolerance: float, active: Mask, reach: float
 ) -> bool:
-    """Try tau on all of the contact; return whether that obeys the law, and restore the solver if not.
-
-    A set that has lost most of the contact is given up otherwise: then it is tried in any case.
-    """
+    """Try tau on all of the contact; return whether that obeys the law, and restore the solver if not."""
     whole = solver.contact
     excluded = whole & ~active
     if not (

@@ -16,10 +16,7 @@ _SPANS = 1e-6  # relative, between the array's stated size and the domain: round
 
 
 def checked(data: Any) -> Array:
-    """Return a copy of the heights (m) that cannot be written to.
-
-    Raises `InputError` unless they are a 2-D array of finite real numbers; masked ones count as not finite.
-    """
+    """Return a read-only copy of the heights (m); `InputError` for no 2-D array of finite numbers."""
     if not isinstance(data, np.ndarray) or data.ndim != 2 or data.size == 0:
         raise InputError("heights", getattr(data, "shape", data), _ALLOWED)
     if data.dtype.kind not in "fiu":

@@ -51,10 +51,7 @@ class NoiseLattice:
     refuse: Callable[[float, str], object]
 
     def field(self, seed: int, x: Array, y: Array, periods: tuple[float, float] | None) -> Array:
-        """Return the field at all pairs of ``x`` and ``y`` (m).
-
-        With ``periods`` (m) the field is another one, which repeats with them; isotropic lengths only.
-        """
+        """Return the field at all pairs of x and y (m), or an isotropic one that repeats with ``periods``."""
         period_x, period_y = periods or (None, None)
         _, shear, _ = self.ellipse.sheared
         nodes_y, smooth_y = self.smoothing(y, 1, period_y)

@@ -110,10 +110,7 @@ class SelfAffineRoughness(Surface):
         return Lay(self.anisotropy, 1.0, self.lay)
 
     def moment(self, order: int, shortest: float | None = None) -> float:
-        """Return ``(2 pi)^-2 int q^n C d^2q`` of the isotropic PSD with C = 1 (m^2) on its plateau.
-
-        Only waves of at least the ``shortest`` length count, where one is given (m).
-        """
+        """Return ``(2 pi)^-2 int q^n C d^2q``, C = 1 m^2 on the plateau, to the ``shortest`` wave (m)."""
         short = min(self.short_cut if shortest is None else shortest, self.long_cut)
         low, high = 2.0 * math.pi / self.long_cut, 2.0 * math.pi / short
         roll = min(2.0 * math.pi / self.roll_off, high)

@@ -47,10 +47,7 @@ def rms_slopes(z: Array, spacing: float | tuple[float, float]) -> tuple[float, f
 
 
 def autocorrelation(z: Array, axis: int) -> Array:
-    """Return the mean product of deviations at lags 0, 1, ... along an axis, over the variance.
-
-    Each lag averages the pairs that exist (nothing wraps). Heights of no variance give NaN.
-    """
+    """Return mean products at lags 0, 1, ... along an axis, over the variance; nothing wraps."""
     deviations = np.moveaxis(z - np.mean(z), axis, -1)
     n = deviations.shape[-1]
     spectrum = np.fft.rfft(deviations, 2 * n)
@@ -60,10 +57,7 @@ def autocorrelation(z: Array, axis: int) -> Array:
 
 
 def correlation_length(z: Array, spacing: float, level: float = 0.1) -> float | None:
-    """Return the lag (m) where the mean autocorrelation first falls to ``level``; None if never.
-
-    ``z`` is square; linear between the points.
-    """
+    """Return the lag (m) where the mean autocorrelation of square z first falls to ``level``, or None."""
     mean = (autocorrelation(z, 0) + autocorrelation(z, 1)) / 2.0
     below = np.flatnonzero(mean <= level)
     if len(below) == 0:

@@ -114,10 +114,7 @@ class Surface(ABC):
         return None
 
     def data_points(self, grid: Grid) -> tuple[Array, tuple[float, float]]:
-        """Return the data's own heights (m; missing ones NaN) on a grid's domain, and their distances (m).
-
-        By default the heights at about the `pitch`.
-        """
+        """Return the data's heights (m; missing: NaN) and distances (m), by default at about the `pitch`."""
         pitch = self.pitch(grid.lengths) or min(grid.spacings)
         counts = [max(2, round(length / pitch)) for length in grid.lengths]
         fine = Grid((counts[0], counts[1]), grid.lengths, grid.periodic)

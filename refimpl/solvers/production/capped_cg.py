@@ -54,10 +54,7 @@ class CappedCG(ProjectedCG):
 
     @property
     def approach(self) -> float:
-        """The prescribed approach, or the mean of ``v`` weighted by the free pressures (m).
-
-        Where none is free it is the middle between the capped and the unloaded elements.
-        """
+        """The prescribed approach, or the mean ``v`` of free pressures; without any the middle (m)."""
         if self._approach is not None or self._pressing.any():
             return super().approach
         v = self.separation

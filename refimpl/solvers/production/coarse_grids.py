@@ -89,10 +89,7 @@ def coarsened(fine: Problem, shape: Shape) -> Problem:
 
 
 def winkler_pressure(problem: Problem) -> Array:
-    """Return the pressure of a Winkler foundation at the approach, or under the load (Pa).
-
-    At a prescribed approach it may vanish: a coarse grid's means of the gap can lie above the approach.
-    """
+    """Return a Winkler foundation's pressure at the approach, where it may vanish, or the load (Pa)."""
     load, dA = problem.load, problem.grid.element_area
     depth = problem.approach if problem.approach is not None else _bearing_depth(problem)
     interference = np.maximum(depth - problem.gap, 0.0)
@@ -136,10 +133,7 @@ def likely_contact(pressure: Array, v: Array, approach: float | None, problem: P
 
 
 def likely_capped(pressure: Array, misfit: Array, contact: Mask, problem: Problem) -> Mask:
-    """Return elements of the likely contact that reach the cap in a Jacobi step from a prolonged pressure.
-
-    ``misfit`` is the approach minus ``v`` (m).
-    """
+    """Return the likely contact that a Jacobi step takes to the cap; ``misfit``: approach less v (m)."""
     stiffness = CAPPED_STEP / problem.elasticity.element_compliance(problem.grid)
     return contact & (pressure + stiffness * misfit >= problem.cap)
 
@@ -159,10 +153,7 @@ def _balancing(freed: Array, stiffness: float, total: float) -> float:
 
 
 def sharpened(pressure: Array, misfit: Array, contact: Mask, precondition: Apply, *, loaded: bool) -> Array:
-    """Return a prolonged pressure after one preconditioned step on the finer grid, without an operator.
-
-    ``misfit`` is the approach minus ``v`` of `likely_contact` (m); under a load the step keeps it.
-    """
+    """Return a prolonged pressure after a preconditioned step from ``misfit`` (m), without an operator."""
     residual = _balanced(misfit * contact, contact, loaded)
     step = _balanced(precondition(residual) * contact, contact, loaded)
     raised: Array = (pressure + FIRST_LENGTH * step) * contact

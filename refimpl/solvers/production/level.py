@@ -81,10 +81,7 @@ class LevelSolver:
         return InitialGuess(self.full(self.cg.pressure), displacement, self.cg.approach, self.needs_mixing)
 
     def result(self, tolerance: float) -> SolverResult:
-        """Solve under the rule for tau's active set.
-
-        Where one of its states meets the window's edge the result is not final: see ``window_too_small``.
-        """
+        """Solve under the rule for tau's active set; not final where ``window_too_small``."""
         ended, used = iterate(self, self.problem, tolerance), self.lagged.indentation
         status = ended.status(self._status())
         if self._status() is not Status.CONVERGED and not (ended.settled or self.exhausted or self.stagnated):
@@ -171,11 +168,7 @@ class LevelSolver:
         return not self.stagnated
 
     def _terms_are_current(self, goal: float) -> bool:
-        """Return whether the residual meets the goal for the pressure after its scaling to the load as well.
-
-        The lagged terms are those of the pressure before it. Where they feed back weakly, new ones change the
-        residual by less than the scaling.
-        """
+        """Return whether the residual meets the goal after the scaling to the load as well."""
         return not self.needs_mixing and self.residual + self.lagged.scaling <= goal
 
     def _cg_goal(self, tolerance: float) -> float:

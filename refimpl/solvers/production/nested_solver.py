@@ -120,11 +120,7 @@ def certified(problem: Problem, result: SolverResult, counter: Counter) -> State
 
 
 def missed_by_window(problem: Problem, state: State, window: Window, tolerance: float) -> Mask:
-    """Return the elements outside a window or on its edge for which it is too small.
-
-    They penetrate by more than the tolerance; or, with slope terms, they are in contact on the edge, where
-    slopes are one-sided.
-    """
+    """Return elements that penetrate outside a window or, with slopes, are in contact on its edge."""
     missed = state.v < state.approach * (1 - tolerance)
     if problem.terms.oblique:
         missed |= state.contact

@@ -124,10 +124,7 @@ class ProjectedCG:
         return contact_residuals(gap, energy, approach, lowest, rounding)
 
     def undecided(self, stiffness: float, among: Mask | None = None) -> int:
-        """Return how many elements, ``among`` these or all, the error left may move in or out.
-
-        ``stiffness`` is the pressure per displacement of a single element (Pa/m).
-        """
+        """Return how many elements the error left may move; ``stiffness``: of a single element (Pa/m)."""
         v, approach = self._separate().v, self.approach
         margin = CERTAINTY * float((np.abs(v - approach) * self.free).max())
         pressing = self._vectors.scatter_mask(self._pressing > stiffness * margin)
@@ -135,10 +132,7 @@ class ProjectedCG:
         return int(np.count_nonzero(~certain if among is None else ~certain[among]))
 
     def iterate(self) -> None:
-        """Take one step of projected CG on the contact set, then the exchange of elements.
-
-        At an approach the set may be empty: there is no step then, and elements that penetrate come back.
-        """
+        """Take a step on the contact set, which may be empty at an approach, then exchange elements."""
         if self.free.any():
             self._step()
         self._separation = None

@@ -9,10 +9,7 @@ from refimpl.solvers.production.constants import LOAD_SLACK
 
 
 def step_share(residual: Array, change: Array, moved: Array) -> float:
-    """Return the multiple of a change that minimises the energy; 0 where the change has none.
-
-    ``moved`` is the change's displacement. The least pressures are scaled: their products would vanish.
-    """
+    """Return the multiple of a change, which displaces ``moved``, of least energy; 0 for none."""
     curvature = inner(change, moved)
     if curvature == 0:
         change = change / (float(np.abs(change).max()) or 1.0)
