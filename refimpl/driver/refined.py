@@ -51,9 +51,11 @@ def refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Pr
         ended = grids.until(grids.features_at)
     except KeyboardInterrupt as interrupt:
         if grids.last is not None:
-            interrupt.args = (_interrupted(grids.last, total_cost(grids.costs)),)
+            line = Notice("interrupted: the finest grid that was finished")
+            interrupt.args = (assemble(grids.last, shortfall=line, cost=total_cost(grids.costs)),)
         raise
-    solved, cost = grids.solved(), total_cost(grids.costs)
+    solved, cost = grids.last, total_cost(grids.costs)
+    assert solved is not None  # the first grids were solved
     if not ended.results[-1].touching:
         return assemble(solved, cost=cost)
     shortfall = None
@@ -62,11 +64,6 @@ def refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Pr
         reached = f"known to {bound:.2g}, not" if math.isfinite(bound) else "not bounded, let alone"
         shortfall = Notice(f"{quantity} is {reached} to {options.accuracy:.2g}: {ended.refusal}")
     return assemble(solved, grids=ended.results, shortfall=shortfall, cost=cost)
-
-
-def _interrupted(solved: Evidence, cost: Cost) -> Solution:
-    line = Notice("interrupted: the finest grid that was finished")
-    return assemble(solved, shortfall=line, cost=cost)
 
 
 @dataclass(frozen=True)
@@ -179,8 +176,3 @@ class _Refinement:
         for name in neglected:
             self.plan = self.plan.restore(self.last.problem, name)
         return self.features_at(longer_side(self.last.features))
-
-    def solved(self) -> Evidence:
-        """Return what was solved last."""
-        assert self.last is not None
-        return self.last

@@ -106,20 +106,12 @@ def _solved(scene: Scene, solution: Solution, approach: float | None) -> Solutio
 
 def advice(error: HalfSpaceError, solution: Solution) -> str:
     """Return advice by the rule of docs/half-space-limits.md: keep, correct, or finite elements."""
-    size = {
-        name: abs(getattr(solution, name))
-        for name in ("friction_coefficient", "contact_area", "max_pressure")
-    }
+    names = "friction_coefficient", "contact_area", "max_pressure", "approach", "normal_force"
+    size = {name: abs(getattr(solution, name)) for name in names}
     size["approach"] = abs(solution.approach + solution.details.problem.datum)
-    size["normal_force"] = abs(solution.normal_force)
     stated = {name: error.stated(name) / value for name, value in size.items() if value}
-    rest = {
-        name: (error.second_order[name] + error.finite_strain[name]) / value
-        for name, value in size.items()
-        if value
-    }
     worst = max(stated, key=lambda name: stated[name])
-    left = max(rest.values())
+    left = max((error.second_order[name] + error.finite_strain[name]) / size[name] for name in stated)
     slope = math.degrees(math.atan(math.sqrt(steepness(solution.details.problem, solution.contact))))
     if slope > JUDGED_TO:
         return f"slopes of {slope:.2g} degrees, beyond the {JUDGED_TO:g} judged: use finite elements"

@@ -53,6 +53,8 @@ class _Parts:
     tolerance: float = part("evidence")
     slopes: Slopes = part("evidence.state")
     excluded: Mask = part("evidence.state")
+    plastic: Mask = part("evidence.state")
+    clearance: Array = part("evidence.state")
     grid: Grid = part("evidence.problem")
     friction: FrictionLaw = part("evidence.problem")
 
@@ -72,6 +74,8 @@ class Details(_Parts):
     slope_error : error of flat-surface influence coefficients at this contact's slopes, by Appendix A's table
     tolerance : what the certificate's residuals must meet
     excluded : elements that the rule for tau's active set leaves without adhesive shear
+    plastic : elements at the hardness
+    clearance : ``v - approach`` (m): the gap without the plastic indentation
     friction : the friction law
     """
 
@@ -101,11 +105,6 @@ class Details(_Parts):
         return self.problem.direction
 
     @property
-    def plastic(self) -> Mask:
-        """Elements at the hardness."""
-        return self.state.plastic
-
-    @property
     def separation(self) -> Array:
         """Height of the upper deformed surface over the lower one (m).
 
@@ -113,11 +112,6 @@ class Details(_Parts):
         """
         lower, upper = self.evidence.surfaces
         return upper - lower
-
-    @property
-    def clearance(self) -> Array:
-        """``v - approach`` (m): the gap without the plastic indentation."""
-        return self.state.clearance
 
     @cached_property
     def bounds(self) -> Bounds:

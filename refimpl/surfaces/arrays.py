@@ -67,23 +67,6 @@ def check_domain(
         raise InputError("pixel", found, "a domain that the array spans: it is never squeezed")
 
 
-def sampling_note(shape: tuple[int, ...], grid: Grid) -> str:
-    """Return how data of that shape are used on a grid, as a sentence."""
-    if shape == grid.shape:
-        return f"the array of {size_text(shape)} heights is used as it is"
-    return f"the array of {size_text(shape)} heights is resampled bicubically to {grid}"
-
-
-def interpolation_notes(shape: tuple[int, ...], grid: Grid) -> tuple[str, ...]:
-    """Return the warning for an array that is coarser than the grid; empty where it is not."""
-    if all(points >= n for points, n in zip(shape, grid.shape, strict=True)):
-        return ()
-    return (
-        f"the grid of {grid} is finer than the array of {size_text(shape)} heights: "
-        "what lies between them is interpolated",
-    )
-
-
 def _refuse_leaving(grid: Grid, offset: tuple[float, float]) -> None:
     room = tuple(edge / 2.0 for edge in grid.spacings)  # from the border to the outermost element centres
     if any(abs(o) > r * (1.0 + 1e-9) for o, r in zip(offset, room, strict=True)):  # 1e-9: rounding of h / 2

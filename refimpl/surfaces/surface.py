@@ -12,9 +12,9 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.errors import InputError, is_whole, require_size
+from refimpl.errors import InputError, is_whole, require_size, size_text
 from refimpl.grid import Array, Grid
-from refimpl.surfaces.arrays import check_domain, checked, interpolation_notes, sampled, sampling_note
+from refimpl.surfaces.arrays import check_domain, checked, sampled
 
 
 class SurfaceWarning(UserWarning):
@@ -229,10 +229,14 @@ class ArraySurface(Surface):
         return sampled(self.data, grid, offset)
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
-        return sampling_note(self.data.shape, grid), *self.notes(grid)
+        used = "used as it is" if self.data.shape == grid.shape else f"resampled bicubically to {grid}"
+        return f"the array of {size_text(self.data.shape)} heights is {used}", *self.notes(grid)
 
     def notes(self, grid: Grid) -> tuple[str, ...]:
-        return interpolation_notes(self.data.shape, grid)
+        if all(points >= n for points, n in zip(self.data.shape, grid.shape, strict=True)):
+            return ()
+        finer = f"the grid of {grid} is finer than the array of {size_text(self.data.shape)} heights"
+        return (f"{finer}: what lies between them is interpolated",)
 
     def pitch(self, lengths: tuple[float, float]) -> float:
         nx, ny = self.data.shape
