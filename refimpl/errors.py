@@ -93,11 +93,7 @@ def require_number(
     below: float | None = None,
     at_most: float | None = None,
 ) -> float:
-    """Return ``value`` as a double; raise `InputError` unless it is a finite real number within the bounds.
-
-    >>> require_number("nu", 0.3, "a ratio", above=-1, at_most=0.5)
-    0.3
-    """
+    """Return ``value`` as a double; raise `InputError` unless it is finite, real and within the bounds."""
     if not isinstance(value, bool) and isinstance(value, numbers.Real):
         number = as_double(value)
         if (

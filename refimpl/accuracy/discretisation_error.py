@@ -75,10 +75,9 @@ its bars, and judged on random scenes (`verification.cases.error_bars.pulled`)."
 
 
 def rest_sizes(results: Sequence[GridFeatures]) -> Array:
-    """Return units of the scatter of mu without tau's share on each grid, shape (4, grids).
+    """Return units of the scatter of mu without tau's share, shape (4, grids).
 
-    Edge fraction to the power 3/2, times mu; slopes within elements, each by itself and in phase; slopes at a
-    free border.
+    The edge fraction's 3/2 power times mu; slopes within elements, apart and in phase; at a free border.
     """
     mu = abs(results[-1].numbers["friction_coefficient"])
     slopes = (slope_scatter(results, name) for name in ("slope_sampling_error", "slope_line_error"))
@@ -86,10 +85,9 @@ def rest_sizes(results: Sequence[GridFeatures]) -> Array:
 
 
 def approach_sizes(results: Sequence[GridFeatures]) -> Array:
-    """Return units of the scatter of an approach under a load on each grid (m), shape (5, grids).
+    """Return units of the scatter of an approach under a load (m), shape (5, grids).
 
-    The contact's edge, as peaks err; the gap's; a free border, where the pressure of a contact that is cut
-    off is singular as under a punch (order h); differences that slopes are (order h^2); first contact.
+    The contact's edge; the gap's; a free border (order h); differences for slopes (h^2); first contact.
     """
     last = results[-1]
     unit = max(abs(last.numbers["approach"]), last.depth)
@@ -203,10 +201,9 @@ def _sheared(grids: _Grids, name: str, area: Intercept, share: Array, unit: floa
 
 
 def _peak(grids: _Grids) -> Intercept:
-    """Return the maximum pressure: that of the parabola, minus its bias, a share of the curvature drop.
+    """Return the maximum pressure: the parabola's, minus its bias, a share of the curvature drop.
 
-    Elements of constant pressure displace less than the waves they stand for, by the share ``q^2 h^2 / 24``:
-    for a single wave that is a 24th of the drop. Band-limited pressures have no such bias.
+    Elements of constant pressure displace less than waves, by ``q^2 h^2 / 24``; band-limited ones do not.
     """
     if not grids.results[-1].peak.smooth:
         return Intercept(grids.finest("max_pressure"), math.inf)
@@ -236,8 +233,7 @@ def _force(grids: _Grids) -> Intercept:
 def _weights(size: Array, spacing: Array) -> Array:
     """Return ``w_k``: each grid's scatter over the finest grid's, and not less than a finer grid's.
 
-    So a number that keeps changing with ever finer elements is not taken as converged. Where the finest grid
-    has no scatter, the weights are those of an area.
+    So a number that keeps changing is not taken as converged. Without scatter they are those of an area.
     """
     if not size[-1] > 0:
         steps: Array = (spacing / spacing[-1]) ** DEFAULT_ORDER

@@ -244,8 +244,7 @@ def undecided_area(pressure: Array, grid: Grid) -> float:
 def hidden_gap(problem: Problem, state: State) -> float:
     """Return the mean gap (m) of elements amid the contact where the pressure's trough reaches zero.
 
-    The trough is that of the parabola through an element and its neighbours, less a share of its second
-    differences; the pressure missing there opens one element against its neighbours.
+    The pressure missing in the trough of a parabola opens one element against its neighbours.
     """
     grid, pressure = problem.grid, state.pressure
     here, *near = _undecided(pressure, grid)
@@ -269,11 +268,9 @@ def _undecided(pressure: Array, grid: Grid) -> Array:
 
 
 def slope_displacement_error(problem: Problem, state: State) -> float:
-    """Return how far the slopes' differences leave ``u / (cos theta_x cos theta_y)`` open, but for a factor.
+    """Return how far the slopes' differences leave ``u / (cos theta_x cos theta_y)`` open (m).
 
-    Central differences of a wave of number q lack the share ``(q h)^2 / 6`` of its tangent; the second
-    differences of tangents are ``(q h)^2`` of them. The root mean squares by pressure are taken: of u, of the
-    tangents and of their second differences.
+    Central differences of a wave q lack ``(q h)^2 / 6`` of its tangent; second ones are ``(q h)^2`` of it.
     """
     pressure, slopes = state.pressure, state.slopes
     total = float(pressure.sum())

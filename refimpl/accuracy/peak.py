@@ -96,11 +96,7 @@ def highest(field: Array, grid: Grid) -> Peak:
 
 
 def deepest(field: Array) -> Peak:
-    """Return the peak of the field turned over, without regard to others or to contact.
-
-    >>> deepest(-np.pad([[3.0]], 3))
-    Peak(height=3.0, curvature_drop=12.0, non_parabolicity=1.0, smooth=True)
-    """
+    """Return the peak of the field turned over, without regard to others or to contact."""
     i, j = (index + _REACH for index in np.unravel_index([np.argmin(field)], field.shape))
     lines = _lines(-np.pad(field, _REACH, mode="edge"), i, j, _REACH)
     height, drop, rest = (float(value[0]) for value in _parabolas(lines))

@@ -31,10 +31,8 @@ PLASTIC_FREEDOM = constant("plastic_freedom")  # weight of the prior
 def area_counts(result: GridFeatures) -> Array:
     """Return the numbers of elements by which an area scatters about its mean excess, each by its own unit.
 
-    Faces of ordinary edges; those towards which pressures do not fall, beyond which gaps do not rise, and
-    both; elements amid the contact that are undecided, and single ones: as symmetric ones come in and out
-    together. Then straight edges, squared, what uneven faces are of them, and what they are of narrow
-    strips; and all faces towards which pressures do not fall, squared, as they are of one rim.
+    Ordinary faces; those of rising pressures, of level gaps, of both; undecided and single elements: all as
+    often as symmetric. Then, squared, straight edges, their uneven and narrow shares, and all of one rim.
     """
     dA, together = result.grid.element_area, result.symmetry_multiplicity
     area = result.numbers["contact_area"]
@@ -74,11 +72,7 @@ def edge_scatter(results: Sequence[GridFeatures]) -> Array:
 
 
 def gap_scatter(result: GridFeatures) -> float:
-    """Return the unit of the mean gap's scatter (m): its share goes with the edge over the gap's area.
-
-    As that of an area does with the edge over the contact's; more where gaps are single elements or end at
-    straight edges along the grid.
-    """
+    """Return the unit of the mean gap's scatter (m): its share goes with the edge over the gap's area."""
     area = result.grid.nominal_area - result.numbers["contact_area"]
     if not (area > 0 and result.edge > 0):
         return 0.0

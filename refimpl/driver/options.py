@@ -166,11 +166,9 @@ class Options:
         return 1e-8 if self.accuracy is None else tolerance_for(self.accuracy)
 
     def plan(self, discretiser: Discretiser | None = None) -> Plan:
-        """Return the plan; with an accuracy, the terms for all grids.
+        """Return the plan; with an accuracy, the terms for all grids, each checked when its turn comes.
 
-        ``discretiser`` samples the heights for it, and keeps them. Raises `InputError` for a grid to solve on
-        that does not fit into memory: before any heights are sampled if not even the whole grid's arrays do.
-        With an accuracy each grid is checked when its turn comes.
+        Raises `InputError` for a grid that does not fit into memory, if possible before heights are sampled.
         """
         grid = self.solve_grid
         if self.grid is not None:

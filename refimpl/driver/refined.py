@@ -41,8 +41,7 @@ _CONVERGED = (Status.CONVERGED, Status.CYCLED)
 def refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Progress | None) -> Solution:
     """Return the finest grid's solution of a refinement, with the bars and the cost of all grids.
 
-    When finer grids do not fit into memory, or exceed the largest size, the finest solved is returned as
-    `ACCURACY_NOT_REACHED` with a warning that states the accuracy reached.
+    Where limits end it, the status is `ACCURACY_NOT_REACHED`, with a warning of the accuracy reached.
     """
     quantity = options.target_quantity
     assert options.accuracy is not None

@@ -23,11 +23,7 @@ def patch_sizes(contact: Mask, *, periodic: bool = False) -> NDArray[np.intp]:
 
 
 def patch_labels(contact: Mask, *, periodic: bool = False) -> NDArray[np.intp]:
-    """Return the patch of each element, numbered from 1 in the order of the array; 0 without contact.
-
-    >>> patch_labels(np.array([[True, False, True]])).tolist()
-    [[1, 0, 2]]
-    """
+    """Return the patch of each element, numbered from 1 in the order of the array; 0 without contact."""
     labels, count = scipy.ndimage.label(contact, np.ones((3, 3)))
     if periodic:
         pairs = np.concatenate([_across(labels), _across(labels.T)], axis=1)

@@ -14,11 +14,7 @@ Shape = tuple[int, int]
 
 @dataclass(frozen=True)
 class Window:
-    """Elements ``[i0, i1) x [j0, j1)`` of a grid.
-
-    >>> Window(2, 5, 0, 4).shape
-    (3, 4)
-    """
+    """Elements ``[i0, i1) x [j0, j1)`` of a grid."""
 
     i0: int
     i1: int

@@ -112,11 +112,7 @@ def read_table(text: str, layout: Layout) -> dict[str, Array]:
 def _gridded(
     points: Sequence[Mapping[str, Any]], layout: Layout, wanted: Mapping[str, object]
 ) -> dict[str, Any]:
-    """Return axes and arrays of the points that count, on the largest full grid of them.
-
-    A value of the last axis is dropped where a point is missing; of the other axes, values that the layout
-    does not ask for.
-    """
+    """Return axes and arrays of the points that count, without values that lack points or are not asked."""
     rows = {
         tuple(point[name] for name in layout.axes): point
         for point in points

@@ -91,8 +91,7 @@ def coefficient_error(
 def slope_error(slopes: Slopes, pressure: Array, pair: Pair, *, plane: bool = False) -> SlopeError:
     """Return the error at a contact's rms gradient, weighted by pressure, and at its steepest element.
 
-    In three dimensions by the table of square elements (`influence_error_3d`); by the table of strips where
-    the surfaces are ``plane``, constant along a direction, and for Poisson's ratios below zero.
+    By the table of square elements; by that of strips for ``plane`` surfaces and negative nu.
     """
     loaded = pressure > 0
     squared = slopes.tan_x[loaded] ** 2 + slopes.tan_y[loaded] ** 2

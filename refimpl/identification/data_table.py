@@ -240,11 +240,7 @@ def _refuse_swapped(rows: Sequence[Row]) -> None:
 
 
 def check_rows(rows: Sequence[Row], unknowns: int = 2) -> tuple[Row, ...]:
-    """Return the rows; raises `InputError` where the parameters cannot be found from them.
-
-    As many loads, or scenes, as unknowns are required. Rows whose mu or whose loads lie so far apart that N
-    and kN are mixed are refused, and so are all beyond any friction, or all less than their uncertainty.
-    """
+    """Return the rows; `InputError` where they cannot determine the unknowns or their units are mixed."""
     known = all(isinstance(row, Row) for row in rows)
     if not known or len(rows) > MAX_ROWS:
         found = f"{len(rows)} rows" if known else type(rows).__name__

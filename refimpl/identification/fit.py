@@ -193,8 +193,7 @@ def _linear_fit(
 def _deleted(weights: Array, hat: Array, misfit: Array) -> Array:
     """Return each row's residual from the fit to the others, over its deviation (Cook, Weisberg 1982).
 
-    Rows are correlated, so it is ``(W e)_i / sqrt((W - W X G)_ii)``, without bounds; 0 for a row that a
-    parameter rests on.
+    That is ``(W e)_i / sqrt((W - W X G)_ii)``; 0 for a row that a parameter rests on.
     """
     own = np.diag(weights - weights @ hat)
     alone = own <= _ALONE * np.diag(weights)

@@ -220,10 +220,9 @@ def _check(
 
 
 def _start(scene: Scene, rows: Sequence[Row]) -> Array:
-    """Return the first guess: the scene's friction, or the least measured mu as beta and hardly any tau.
+    """Return the first guess: the scene's friction, or the least mu as beta and hardly any tau.
 
-    Little friction leaves the contact nearly as it is without: the solve converges, and slopes hold. A tau
-    above the pressures of the smallest load, which nobody knows beforehand, does neither.
+    A tau above the pressures of the smallest load would neither converge nor give slopes.
     """
     found = np.array([parameters(scene)[name] for name in NAMES])
     if found.all():

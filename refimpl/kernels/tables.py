@@ -31,10 +31,6 @@ def normal_table(n: int, m: int, dx: float, dy: float | None = None, *, known: A
     ``dy = dx`` by default; ``known`` is a smaller table of the same elements, to start from: the result is
     the same to the last bit. Extend evenly to negative offsets. Same accuracy and errors as
     ``normal_integral``.
-
-    >>> table = normal_table(3, 3, 1.0)
-    >>> bool((table == table.T).all())
-    True
     """
     dx, dy, unit = _edges(n, m, dx, dy)
     known = None if known is None else known / unit
@@ -55,9 +51,6 @@ def tangential_table(
 
     ``dy = dx`` by default; ``known`` as for `normal_table`. Extend oddly in x, evenly in y. Same accuracy
     and errors as ``tangential_integral``.
-
-    >>> tangential_table(2, 2, 1.0)[0]
-    array([0., 0.])
     """
     dx, dy, unit = _edges(n, m, dx, dy)
     table = _table(CERRUTI, n, m, dx, dy, None if known is None else known / unit)
@@ -117,11 +110,7 @@ def _offsets(start: int, stop: int, edge: float) -> Array:
 
 
 def _slabs(n: int, m: int, known: int) -> Iterator[tuple[int, int]]:
-    """Yield ``[start, stop)``, for rows and columns alike: thin near the load, where the order changes fast.
-
-    Where slabs start does not depend on n and m as long as both are larger; those that end within what is
-    ``known`` are passed over.
-    """
+    """Yield ``[start, stop)`` beyond ``known``, thin near the load, where the order changes fast."""
     start = _NEAR_COUNT
     while start < max(n, m):
         evaluations = order_for(2.0 * start) * min(start, n, m)  # per row

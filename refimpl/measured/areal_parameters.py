@@ -137,8 +137,7 @@ class Autocorrelation:
     def ellipse(self, above: float = 0.4) -> tuple[float, float, float]:
         """Return half-axes (m) at which ``exp(-r^2)`` is 1/e, and the longer one's angle to x (rad).
 
-        ``-ln`` of the autocorrelation is fitted by a quadratic form at the lags around zero at which the
-        autocorrelation exceeds ``above``, with its square as weights.
+        ``-ln`` of the values around zero ``above`` a level is fitted by a quadratic form, squares as weights.
         """
         from scipy.ndimage import label
 

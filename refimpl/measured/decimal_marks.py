@@ -19,11 +19,7 @@ _TIGHT = re.compile(r"\d,\d")
 def refuse_ambiguous(
     path: Path, rows: Callable[[], Iterator[str]], separator: str | None, sample: list[str]
 ) -> None:
-    """Raise InputError where marks within numbers may be decimal or of thousands, or separate them.
-
-    They may where all marked numbers of the table look like 1.320 and some mark is a comma, or 998 stands in
-    the same column.
-    """
+    """Raise `InputError` where marks within numbers may be decimal, of thousands, or separators."""
     if separator == ",":
         found = _grouped((row.replace(",", ";") for row in rows()), ";")
     else:

@@ -17,10 +17,9 @@ _UNIT = re.compile(rf"(?<!\w)({'|'.join(UNITS)})(?!\w)")
 
 
 def on_grid(path: Path, points: Array) -> tuple[Array, tuple[float, float]]:
-    """Return the heights ``[i, j]`` of points ``(x, y, z)`` and the pitch of their grid; absent ones are NaN.
+    """Return heights ``[i, j]`` of points (x, y, z) and their median pitch; absent ones are NaN.
 
-    The pitch is the median distance between neighbouring distinct coordinates. Raises InputError for a line
-    scan, for points more than a tenth of the pitch off the grid and for two points in one place.
+    Raises `InputError` for a line scan, points a tenth of the pitch off the grid, two in one place.
     """
     x, y, z = points[np.isfinite(points[:, :2]).all(axis=1)].T
     indices, pitches = [], []

@@ -34,10 +34,9 @@ _started: dict[int, subprocess.Popen[bytes]] = {}
 
 
 def read_elsewhere(path: Path, load: Callable[[], T]) -> T:
-    """Return what ``load``, which can be pickled, returns in the reader; raises `InputError` where it does.
+    """Return what ``load``, which can be pickled, returns in the reader.
 
-    So it does where the reader crashes or takes more than its time or memory, which follow from the file's
-    size; the next file gets a new one.
+    Raises `InputError` where it does, where the reader crashes, or takes more than a file of that size may.
     """
     with _LOCK:
         reader = _reader()

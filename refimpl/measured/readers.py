@@ -49,11 +49,9 @@ def read(
     """Return the heights of one file, x to the right and y up as seen from outside.
 
     ``unit`` of the heights (a key of UNITS) and ``pixel_size`` (m) serve files that state none and override
-    those that do, with a note. ``.npy`` and text without a header are plain tables: row i at x_i, column j at
-    y_j, nan where nothing was measured. Text with a header is an instrument's image: lines along x, the first
-    at the top. Three columns are points x, y, z in ``unit``: another pixel than their pitch is refused, but
-    for x and y in another unit. All else is read by SurfaceTopography.
-    Raises InputError.
+    those that do, with a note. ``.npy`` and text without a header have row i at x_i, column j at y_j; text
+    with a header has an image's lines, from the top; three columns are points. All else is read by
+    SurfaceTopography. Raises `InputError`.
     """
     given = Overrides(unit, pixel_size, channel)
     found = read_or_refuse(path, lambda: _read(path, given))

@@ -26,9 +26,7 @@ _NUMPY = b"\x93NUMPY"  # read by NumPy in Python, which does not crash
 def read_untrusted(path: Path, load: Callable[[], T]) -> T:
     """Return what ``load`` returns; raise `InputError` for whatever else becomes of the file.
 
-    Parsers of other people raise errors of any kind on bytes that are not what they claim to be, and some
-    crash the process or take all its memory: binary and large files are read in another one
-    (`reader_process`), to which ``load`` is pickled.
+    Parsers may crash or take all memory: binary and large files are read in another process.
     """
     reading = partial(read_or_refuse, path, partial(_read, path, load))
     return read_elsewhere(path, reading) if _is_risky(path) else reading()

@@ -213,12 +213,8 @@ def certify(
 ) -> State:
     """Recompute displacements, slopes, approach, forces and every residual from the returned arrays.
 
-    All arguments but the first two are the fields of a `SolverResult`; ``excluded``, ``status`` and
-    ``iterations`` are passed on and enter no number.
-
-    ``slopes`` enter only through the facet tractions of the slope correction and through the residual
-    ``slope``, and the plastic ``indentation`` (m) only through the slopes of the common surface; the cosines
-    are those of the recomputed displacements.
+    Arguments after the first two are fields of a `SolverResult`, of which ``slopes`` and ``indentation`` (m)
+    enter through facet tractions, the common surface and the residual ``slope`` alone.
     """
     cap = problem.cap
     normal = problem.elasticity.normal(operator, pressure)
@@ -303,11 +299,7 @@ def _capped_gap(f: Array, v: Array, cap: float, approach: float) -> float:
 
 
 def missed_approach(f: Array, v: Array, cap: float, approach: float) -> float:
-    """Return the distance of a prescribed approach from that of the state (m).
-
-    Where some elements are at the cap and the others without pressure, every approach between the ``v`` of
-    both is the state's.
-    """
+    """Return the distance of a prescribed approach from the state's interval of approaches (m)."""
     if np.any((f > 0) & (f < cap)) or not np.any(f >= cap):
         return abs(approach_from(f, v, cap) - approach)
     lowest = float(np.min(v, where=f < cap, initial=np.inf))

@@ -19,9 +19,6 @@ class Material:
 
     Raises `InputError` unless ``E`` and ``hardness`` are positive and finite (``E`` may be infinite) and
     ``-1 < nu <= 0.5``.
-
-    >>> round(Material(E=200e9, nu=0.3).plane_strain_modulus / 1e9, 3)
-    219.78
     """
 
     E: float

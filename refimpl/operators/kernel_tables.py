@@ -24,8 +24,7 @@ _cache: OrderedDict[tuple[str, float, bool], Array] = OrderedDict()
 def unit_table(kind: str, shape: tuple[int, int], aspect: float = 1.0) -> Array:
     """Return a read-only table of ``I[1/rho]`` ("normal") or ``I[x/rho^2]`` ("tangential").
 
-    Entry ``[i, j]`` belongs to the offset ``(i, j aspect)`` from an element of edges ``1 x aspect``. The
-    largest table so far is kept up to 32 MB, and smaller ones are views of it.
+    Entry ``[i, j]`` belongs to the offset ``(i, j aspect)`` from an element of edges ``1 x aspect``.
     """
     n, m = shape
     if max(n, m) <= _SHARED * min(n, m):

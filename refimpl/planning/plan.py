@@ -118,11 +118,7 @@ def make_plan(
 
 
 def estimated_memory(method: Method, grid: Grid, *, extent: float = 0.0) -> int:
-    """Return the estimated bytes at the peak of a solve.
-
-    ``extent``: share of the grid in the rectangle around the expected contact; by default only arrays of the
-    whole grid are counted.
-    """
+    """Return the bytes at a solve's peak; ``extent``: the expected contact's rectangle over the grid."""
     if method == "dense":
         return 8 * _DENSE_MATRICES * grid.elements**2
     return round(max(_GRID_BYTES, _WINDOW_BYTES * min(1.0, _GROWTH * extent)) * grid.elements)

@@ -50,8 +50,7 @@ class Term:
 def budget_of(problem: Problem, contact: ExpectedContact, demand: float) -> float:
     """Return the sum that the effects of all neglected terms may reach: half the demand.
 
-    Without friction, symmetric surfaces have neither F nor Q, and slopes enter by their squares alone, as a
-    change of A and f. There the budget is a hundredth of the grid's own error of A, if that is more.
+    Frictionless symmetric surfaces have slopes by squares alone: a hundredth of the grid's error of A.
     """
     if is_frictionless(problem.friction) and contact.symmetric:
         return max(_SHARE_OF_DEMAND * demand, _SHARE_OF_EDGE_ERROR * contact.edge_error)

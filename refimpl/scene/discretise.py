@@ -20,11 +20,8 @@ def discretise(
 ) -> Problem:
     """Return the scene's problem on a grid, with all terms but the slope correction by default.
 
-    ``approach`` replaces the load if given: it counts from first contact, or from the mean planes when the
-    scene is periodic (m). The datum, the difference of both, is defined here.
-
-    Raises `InputError` for an approach that is rounding of the datum: at full contact, where it is 0, any
-    mean pressure will do.
+    ``approach`` (m), from first contact or the mean planes, replaces the load; the datum, the difference of
+    both, is defined here. Raises `InputError` for an approach that is rounding of the datum.
     """
     lower, upper = scene.sampled(grid)
     gap = upper - lower

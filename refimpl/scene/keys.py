@@ -67,11 +67,7 @@ class Key:
 
 
 def scene_keys() -> dict[str, tuple[Key, ...]]:
-    """Return the keys of every table of a scene file: scene, body, material, friction, surfaces by kind.
-
-    >>> [key.name for key in scene_keys()["friction"]]
-    ['tau', 'beta']
-    """
+    """Return the keys of every table of a scene file: scene, body, material, friction, surfaces by kind."""
     tables = {
         "scene": _scene(),
         "body": _body(),
@@ -101,11 +97,7 @@ def allowed_by(read: Callable[[Table], object], table: Table, key: str, wrong: o
 
 
 def type_in_words(hint: object) -> str:
-    """Return an annotated type in words.
-
-    >>> type_in_words(float | tuple[float, float] | None)
-    'number or [number, number]'
-    """
+    """Return an annotated type in words."""
     if get_origin(hint) in (Union, types.UnionType):
         words = [type_in_words(one) for one in get_args(hint) if one not in (type(None), Any)]
         return " or ".join(dict.fromkeys(words))

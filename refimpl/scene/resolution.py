@@ -24,8 +24,7 @@ class Resolution:
 def resolution(scene: Scene, grid: Grid, accuracy: float) -> Resolution | None:
     """Return the resolution of the roughness that is resolved worst; None without random roughness.
 
-    Central differences see the rms slope too small (`refimpl.surfaces.surface.Detail.required`), and the
-    contact area goes as its inverse. For Eq. (9): ``l/h >= sqrt(2.3 / accuracy)``.
+    Contact area goes as the inverse of the slope seen. For Eq. (9): ``l/h >= sqrt(2.3 / accuracy)``.
     """
     spacing = max(grid.spacings)
     found = [

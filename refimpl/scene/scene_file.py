@@ -42,11 +42,7 @@ def read_scene(path: str | Path) -> Scene:
 
 
 def read_tolerances(path: str | Path) -> dict[str, float]:
-    """Return a scene file's ``[tolerances]``: relative half-widths (95 %) by parameter.
-
-    >>> read_tolerances("table1-smooth")
-    {}
-    """
+    """Return a scene file's ``[tolerances]``: relative half-widths (95 %) by parameter."""
     table, folder = _read(path)
     return _tolerances(table, scene_from_dict(table, folder))
 
@@ -82,11 +78,7 @@ def read_toml(path: Path, field: str) -> dict[str, Any]:
 
 
 def shipped_scenes() -> tuple[str, ...]:
-    """Return the names of the scenes that ship as package data.
-
-    >>> "table1-smooth" in shipped_scenes()
-    True
-    """
+    """Return the names of the scenes that ship as package data."""
     folder = resources.files("refimpl").joinpath("data", "scenes")
     files = (Path(item.name) for item in folder.iterdir())
     return tuple(sorted(file.stem for file in files if file.suffix == ".toml"))

@@ -202,11 +202,9 @@ def _gathered(
 
 
 def friction_slopes(scene: Scene, solution: Solution) -> tuple[float, float]:
-    """Return ``d mu / d tau`` (1/Pa) and ``d mu / d beta`` of the corrected mu at the solution's contact set.
+    """Return ``d mu / d tau`` (1/Pa) and ``d mu / d beta`` of the corrected mu at the contact set.
 
-    Two GMRES solves and no solve of the scene. The motion of the contact's edge is neglected: `sensitivity`
-    includes it. Where all contact is at the hardness, pressures are fixed and the slopes are sums.
-    Both parameters must be positive. Raises as `sensitivity` does.
+    Two GMRES solves; the edge does not move. Contact at the hardness alone has sums. Raises as `sensitivity`.
     """
     base = solution.details.problem.with_terms(_terms(solution))
     active, excess = solution.contact & ~solution.details.excluded, solution.details.features.excess

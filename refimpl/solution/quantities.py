@@ -57,11 +57,9 @@ def _area_share_error(solution: Numbers, quantity: Quantity) -> float | None:
 
 
 def _mean_gap_error(solution: Numbers, quantity: Quantity) -> float | None:
-    """Return the bar of the bodies' distance, and the share of the displacements by which N is uncertain.
+    """Return the approach's bar, and the share of the displacements by which N is uncertain.
 
-    The distance is open as the approach is; mean displacements are in proportion to N and less than the
-    approach. Judged on 16 scenes of the kinds of the error bars on 48 and 96 against 384: all 32 covered, the
-    worst at 0.40 of the bar.
+    Judged on 16 scenes on 48 and 96 against 384: all 32 covered, the worst at 0.40 of the bar.
     """
     approach, force = solution.error("approach"), solution.error("normal_force")
     if approach is None or force is None:

@@ -135,9 +135,5 @@ def assemble(
     shortfall: Notice | None = None,
     cost: Cost | None = None,
 ) -> Solution:
-    """Return the solution of a solved problem.
-
-    ``grids`` are the features that error bars come from, of this grid alone by default. ``shortfall`` says
-    why a requested accuracy was not reached; ``cost`` is that of all grids.
-    """
+    """Return the solution of a solved problem, with the features and the cost of all grids."""
     return Solution(Details(evidence, cost or evidence.cost, tuple(grids), shortfall))

@@ -132,8 +132,7 @@ class TauSolver(Protocol):
     def solve(self, tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
         """Solve with tau on ``active``; return whether the residual meets the tolerance.
 
-        The solver may stop as soon as its contact set is decided, but for a share of it that falls with the
-        tolerance, and passes the test ``enough``.
+        The solver may stop as soon as its contact set is decided and passes ``enough``.
         """
 
     def copy(self) -> Any:
@@ -193,8 +192,7 @@ def iterate(solver: TauSolver, problem: Problem, tolerance: float) -> TauResult:
 def promising(problem: Problem, operator: Influence, pressure: Array, excluded: Mask, reach: float) -> bool:
     """Return whether tau on the excluded elements as well may leave the contact as it is.
 
-    The gap that it opens takes from each element the pressure that closes it there: all have more. An
-    excluded element with hardly any pressure leaves the contact again by what tau does to the slopes.
+    All have more pressure than closes the gap that it opens, excluded ones than what it does to slopes.
     """
     stiffness = 1 / problem.elasticity.element_compliance(problem.grid)
     held = problem.friction.shear_offset(pressure, excluded)

@@ -35,10 +35,9 @@ def checked(data: Any) -> Array:
 
 
 def sampled(data: Array, grid: Grid, offset: tuple[float, float]) -> Array:
-    """Return the heights (m) of ``data``, which spans the grid's domain, at the element centres.
+    """Return the heights (m) of ``data`` at the element centres: copied, or resampled bicubically.
 
-    ``data`` of the grid's shape is copied; other data are resampled bicubically. Raises `InputError` for
-    fewer than four points an axis, and for an offset (m) that leaves the domain unless the grid is periodic.
+    Raises `InputError` for fewer than four points an axis, and an offset (m) out of a free domain.
     """
     if data.shape == grid.shape and offset == (0.0, 0.0):
         return data.copy()

@@ -168,8 +168,7 @@ class GaussianRoughness(Surface):
         return self.rms / self._realised_rms(grid) if self.normalise else 1.0
 
     def _realised_rms(self, grid: Grid) -> float:
-        """Return the standard deviation (m) of the unscaled field over the domain: Gauss-Legendre with 10
-        points on each panel of at most half a correlation length (error < 1e-12, by halving the panels)."""
+        """Return the domain's standard deviation (m): 10 Gauss points per half length (error < 1e-12)."""
         lengths = self.ellipse.on_axes
         for side, length in zip(grid.lengths, lengths, strict=True):
             if side < length:

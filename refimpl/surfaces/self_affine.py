@@ -200,9 +200,8 @@ class SelfAffineRoughness(Surface):
     def missed(self, spacing: float) -> tuple[float, float]:
         """Return the shares of rms slope and rms curvature that differences over ``spacing`` (m) miss.
 
-        Central differences see ``sin(q h cos t) / h`` of a wave q at the angle t to the axis, second
-        differences ``2 (1 - cos(q h cos t)) / h^2``; squares averaged over t are ``(1 - J0(2qh)) / (2 h^2)``
-        and ``(6 - 8 J0(qh) + 2 J0(2qh)) / h^4``, in place of ``q^2 / 2`` and ``3 q^4 / 8``. Across the lay.
+        They see ``(1 - J0(2qh)) / (2 h^2)`` and ``(6 - 8 J0(qh) + 2 J0(2qh)) / h^4`` of a wave in place of
+        ``q^2 / 2`` and ``3 q^4 / 8``, averaged over angles. Across the lay.
         """
         q, weight = self._quadrature(spacing)
         power, qh = weight * self._shape(q) * q**2, q * spacing
@@ -214,8 +213,7 @@ class SelfAffineRoughness(Surface):
         return 1.0 - math.sqrt(seen / slope), 1.0 - math.sqrt(bent / curvature)
 
     def _quadrature(self, spacing: float) -> tuple[Array, Array]:
-        """Return the points q (rad/m) and weights of an integral over log q: ten Gauss points on panels of an
-        eighth of an octave or, where that is shorter, of half an oscillation of the Bessel functions."""
+        """Return points q (rad/m) and weights over log q: ten Gauss points per eighth of an octave."""
         ends = [2.0 * math.pi / wave for wave in (self.long_cut, self.roll_off, self.short_cut)]
         node, weight = np.polynomial.legendre.leggauss(10)
         points, weights = [], []

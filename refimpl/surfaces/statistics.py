@@ -22,11 +22,7 @@ def skewness(z: Array) -> float:
 
 
 def kurtosis(z: Array) -> float:
-    """Return the fourth central moment over ``rms^4``; 3 for Gaussian heights.
-
-    >>> kurtosis(np.array([[-1.0, 1.0], [1.0, -1.0]]))
-    1.0
-    """
+    """Return the fourth central moment over ``rms^4``; 3 for Gaussian heights."""
     return _moment(z, 4)
 
 
@@ -37,11 +33,7 @@ def slopes(z: Array, spacing: float | tuple[float, float]) -> tuple[Array, Array
 
 
 def rms_slopes(z: Array, spacing: float | tuple[float, float]) -> tuple[float, float]:
-    """Return the root mean squares of ``dz/dx`` and ``dz/dy`` (about 0: a tilt counts).
-
-    On Eq. (9) and spacing h the central difference sees ``(R(0) - R(2h)) / (2 h^2)`` in place of ``-R''(0)``:
-    too little by the fraction ``4.6 (h / l)^2`` of the mean square, to leading order.
-    """
+    """Return the root mean squares of ``dz/dx`` and ``dz/dy`` (about 0: a tilt counts)."""
     along_x, along_y = slopes(z, spacing)
     return float(np.sqrt(np.mean(along_x**2))), float(np.sqrt(np.mean(along_y**2)))
 

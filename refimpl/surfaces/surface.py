@@ -44,8 +44,7 @@ class Detail:
     def required(self, accuracy: float) -> float:
         """Return the elements per length at which differences miss ``accuracy`` of the rms slope.
 
-        A wave q at the angle t to the axis has ``sin(q h cos t) / h`` in place of ``q cos t``: of the mean
-        square slope ``(h curvature / length)^2 / 4`` is missing, of the rms slope half of that.
+        Of the mean square slope ``(h curvature / length)^2 / 4`` is missing.
         """
         return self.curvature / math.sqrt(8.0 * accuracy)
 

@@ -65,8 +65,7 @@ class CappedCG(ProjectedCG):
     def residuals(self) -> tuple[float, float]:
         """Return the complementarity gap of both bounds over the elastic energy, and the penetration.
 
-        At a prescribed approach the first is at least the work done by the error of the mean of ``v`` on the
-        free elements, as in the certificate.
+        At an approach the gap is at least the work by the error of the mean of ``v``.
         """
         f, v, approach = self.pressure, self.separation, self.approach
         shares = f / (float(f.sum()) or 1.0)
@@ -83,11 +82,7 @@ class CappedCG(ProjectedCG):
         return max(relative, missed), penetration
 
     def undecided(self, stiffness: float, among: Mask | None = None) -> int:
-        """Return what `ProjectedCG` returns where no pressure is at the cap or near it, else all elements.
-
-        Load that elements at the cap do not bear may bring others into contact, however small the error of
-        the separation on the free ones is.
-        """
+        """Return what `ProjectedCG` does below the cap, else all elements: load may move anywhere."""
         below_cap = not self.capped.any() and bool(self._pressing.max(initial=0.0) < _FULL * self._cap)
         return super().undecided(stiffness, among) if below_cap else self.capped.size
 
@@ -188,8 +183,7 @@ class CappedCG(ProjectedCG):
     def _scale_to_target(self, *, displace: bool = True) -> None:
         """Scale the free pressures to the load that the capped ones leave, but none beyond the cap.
 
-        Where the capped ones bear more, those of largest ``v`` lose their pressure; where the free ones
-        cannot bear it, all pressures are scaled.
+        Where capped ones bear more, those of largest ``v`` lose pressure; where free ones cannot, all scale.
         """
         assert self._target is not None
         assert self._free_target is not None

@@ -64,11 +64,7 @@ def _coarser(shape: Shape) -> Shape:
 
 
 def coarse_tolerance(shape: Shape) -> float:
-    """Return the residual of a coarse grid, below the error of the next start's interpolation.
-
-    >>> coarse_tolerance((256, 256)), coarse_tolerance((1024, 512))
-    (0.001, 0.0005)
-    """
+    """Return the residual of a coarse grid, below the error of the next start's interpolation."""
     return COARSE_TOLERANCE * min(1.0, COARSE_SIDE / max(shape))
 
 
@@ -104,9 +100,7 @@ def winkler_pressure(problem: Problem) -> Array:
 def _bearing_depth(problem: Problem) -> float:
     """Return the least depth of an element at which the foundation bears the load (m).
 
-    Its stiffness is that of a half-space under a load of the contact's width, ``1 / (compliance width)``. On
-    32 x 32 elements 0.6 or 2.5 times the width cost CG a sixth more steps (measured), and contact on 3 of 10
-    elements whatever the load up to twelve times as many (tests).
+    Its stiffness is a half-space's under a contact of that width; 0.6 or 2.5 times cost a sixth more steps.
     """
     assert problem.load is not None
     dA = problem.grid.element_area
@@ -119,10 +113,9 @@ def _bearing_depth(problem: Problem) -> float:
 
 
 def likely_contact(pressure: Array, v: Array, approach: float | None, problem: Problem) -> tuple[Mask, float]:
-    """Return elements in contact after a damped Jacobi step from a prolonged pressure, and the approach (m).
+    """Return the contact after a damped Jacobi step from a prolonged pressure, and the approach (m).
 
-    ``v`` is the prolonged displacement plus the grid's gap (m); its error is of the grid's highest frequency.
-    Without a known approach, the one that keeps the load is found. No operator is applied.
+    ``v`` is the prolonged displacement plus the gap (m). Without an approach the load is kept.
     """
     stiffness = 0.5 / problem.elasticity.element_compliance(problem.grid)
     freed = pressure - stiffness * v
@@ -141,8 +134,7 @@ def likely_capped(pressure: Array, misfit: Array, contact: Mask, problem: Proble
 def _balancing(freed: Array, stiffness: float, total: float) -> float:
     """Return the approach at which ``max(freed + stiffness approach, 0)`` adds up to the total.
 
-    Newton's method with all elements in contact at first. The function is convex, and its slope is the number
-    of elements that press. So steps come from above, and the number falls until it is that of the solution.
+    Newton's method on a convex function, from above: fewer elements press in every step, to the last.
     """
     pressing, fewest = freed, freed.size + 1
     while pressing.size < fewest:

@@ -137,8 +137,7 @@ class LevelSolver:
     def solve(self, tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
         """Alternate CG and updates until the residual meets the tolerance, with tau on ``active``.
 
-        Stop as soon as the contact set is decided and passes the test ``enough``: of a gradual set after an
-        update alone, because its shares feed back.
+        Stop as soon as a contact set that passes ``enough`` is decided, of a gradual set after an update.
         """
         # mixing of the shares of tau has no bearing on a fixed set
         mixes = self.needs_mixing if self.lagged.active.is_fixed else self._slopes_need_mixing

@@ -24,11 +24,9 @@ def longest_step(pressure: Array, change: Array) -> float:
 
 
 def cut_at_zero(trial: Array, pressure: Array, change: Array, weights: Array, target: float | None) -> bool:
-    """Cut a trial point at zero, and set ``change`` to ``trial - pressure``; return False if nothing remains.
+    """Cut a trial at zero, set ``change`` to ``trial - pressure``; return False if nothing remains.
 
-    ``weights.trial`` is brought to the target, if there is one. Load that the cut adds is taken from all
-    pressures. A small excess is taken only from those that rise: scaling the others would disturb pressures
-    that have converged.
+    ``weights.trial`` is brought to the target; a small excess is taken from rising pressures alone.
     """
     np.maximum(trial, 0.0, out=trial)
     total = inner(weights, trial)
