@@ -21,6 +21,7 @@ def _texts(table: Mapping[str, Any]) -> Texts:
     return {key: (unit, meaning) for key, (unit, meaning) in table.items()}
 
 
-SCENE, BODY, MATERIAL, FRICTION = (_texts(_TABLES[name]) for name in ("scene", "body", "material", "friction"))
+SCENE, BODY = _texts(_TABLES["scene"]), _texts(_TABLES["body"])
+MATERIAL, FRICTION = _texts(_TABLES["material"]), _texts(_TABLES["friction"])
 SURFACES = {kind: _texts(table) for kind, table in _TABLES["surface"].items()}
 """Texts by a surface's ``kind``."""

@@ -12,11 +12,9 @@ constant, and on a grid it is a count. It is found in two ways, and ``tau dA`` i
   over two full solves for each. So it is for all parameters where pressures reach the hardness: there the
   edge has no such growth.
 
-The scatter stated beside a derivative (that of the area through tau beside friction) has in squares:
-elements counted in two solves, the cubic term, the comparison of the edge with 5 x 5 or with 9 x 9 elements,
-for the load and for surfaces the difference of the fixed set's answer and that of the two solves, the
-difference to the same derivative on half the elements along each side, and the number's own error bar, as if
-its error changed by as much while the parameter changes by a factor of e.
+The scatter beside a derivative has in squares (that of the area through tau beside friction): counts in two
+solves, the cubic term, the edge compared with 5 x 5 or 9 x 9 elements, the fixed set's answer against two
+solves, half the elements along each side, and the number's own bar over a factor of e of the parameter.
 """
 
 from __future__ import annotations

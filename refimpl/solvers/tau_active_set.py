@@ -15,12 +15,10 @@ tau need not be the elements in contact. The rule has three steps.
    with tau on all of it. If that is the contact again, the law holds everywhere; if not, the state with tau
    on A is final.
 
-What this means for the user: the set is a property of the grid, the same for every solver, window and start,
-but for elements whose pressure or clearance is so small that a state before the last leaves it undecided.
-If elements are excluded, mu may differ by as much as tau on them over the load, the part ``active set`` of
-its error bar: typically 4e-4 of mu on 128 x 128 elements of random scenes, and 2e-5 for Table 1's ball on 512
-x 512. If none are, the law holds everywhere; other sets may obey it as well, with a mu that differs by up to
-2e-3 of its value on 128 x 128 elements, in one random scene of ten.
+The set is a property of the grid, the same for every solver, window and start, but for elements whose
+pressure or clearance is too small to decide. Excluded elements leave mu open by tau on them over the load,
+the part ``active set`` of its error bar. Without any the law holds everywhere; other sets may obey it too,
+with a mu that differs by up to 2e-3 of its value on 128 x 128 elements, in one random scene of ten.
 """
 
 from __future__ import annotations

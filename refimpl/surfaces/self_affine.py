@@ -200,7 +200,7 @@ class SelfAffineRoughness(Surface):
     def missed(self, spacing: float) -> tuple[float, float]:
         """Return the shares of rms slope and rms curvature that differences over ``spacing`` (m) miss.
 
-        They see ``(1 - J0(2qh)) / (2 h^2)`` and ``(6 - 8 J0(qh) + 2 J0(2qh)) / h^4`` of a wave in place of
+        These have ``(1 - J0(2qh)) / (2 h^2)`` and ``(6 - 8 J0(qh) + 2 J0(2qh)) / h^4`` of a wave in place of
         ``q^2 / 2`` and ``3 q^4 / 8``, averaged over angles. Across the lay.
         """
         q, weight = self._quadrature(spacing)
