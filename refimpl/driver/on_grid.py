@@ -82,7 +82,6 @@ def _solve_problem(
 
 
 def _without_contact(problem: Problem) -> State:
-    """Return the state of surfaces that do not touch at the approach: nothing is loaded."""
     zero = np.zeros(problem.gap.shape)
     slopes = problem.slopes(zero, zero)
     operator = whole_grid_influence(problem.grid, problem.direction, Window(0, 1, 0, 1))

@@ -185,5 +185,4 @@ class Options:
 
 
 def _by(grid: Grid) -> str:
-    """Return the lengths of a grid, one if it is a square."""
     return " x ".join(f"{length}" for length in dict.fromkeys(grid.lengths))

@@ -58,7 +58,6 @@ def half_space_excess(problem: Problem, state: State) -> tuple[float, str] | Non
 
 
 def _near_contact(problem: Problem, state: State) -> ModelForm:
-    """Return the model-form error by the surfaces in a window around the contact."""
     grid = problem.grid
     size = max(grid.window_around(state.contact, margin=0).shape)
     near = grid.window_around(state.contact, margin=max(size // 2, _AROUND))

@@ -112,7 +112,6 @@ def _of_frame(table: Any) -> Cells:
 
 
 def _of_file(path: Path) -> tuple[Cells, str]:
-    """Return the cells of a CSV file, and its decimal mark."""
     require_regular("data", path, MAX_BYTES)
     try:
         text = path.read_text(encoding="utf-8-sig")

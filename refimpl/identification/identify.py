@@ -172,7 +172,6 @@ def _proposal(
 
 
 def _values(fitted: Fit, profile: Profile | VaryingProfile, further: Sequence[str]) -> dict[str, Interval]:
-    """Return the values with their intervals; those of further parameters from the logarithms'."""
     found = {}
     for j, name in enumerate(("tau", "beta", *further)):
         ends = float(fitted.theta[j]), *profile.interval(np.eye(len(fitted.theta))[j])

@@ -1,4 +1,4 @@
-"""Areal roughness parameters of a measured map: heights, slopes, autocorrelation.
+"""Areal roughness parameters of a measured map: heights, bearing curve, slopes, autocorrelation.
 
 ``z[i, j]`` (m) is a levelled map, missing points NaN; ``pixel`` its spacings (m). Everything is a mean over
 the points, or the pairs of points, that were measured. Names as in ISO 25178-2.
@@ -21,6 +21,8 @@ Pixel = tuple[float, float]
 SLOPES = 1e-4, 10.0  # rms slopes of machined, polished and worn surfaces lie between; um for m is 1e6
 ISOTROPIC = 1.1  # ratio of correlation lengths up to which a map counts as isotropic, or by chance:
 BY_CHANCE = 3.0  # times the correlation length over the root of the area: two of the ratio's deviations
+CLASSES = 10_000  # of the material ratio curve (bearing curve)
+CORE = 0.4  # material ratio of the core's secant
 DIRECTIONS = 180  # directions of the half-circle in which the autocorrelation is followed
 
 
@@ -58,6 +60,29 @@ def implausible_slope(z: Array, pixel: Pixel) -> tuple[str, ...]:
     return (
         f"rms slope {slope:.2g}, beyond {SLOPES[0]:g} to {SLOPES[1]:g}: is the pixel {shown}, is unit right?",
     )
+
+
+def material_ratio(z: Array, classes: int = CLASSES) -> tuple[Array, Array]:
+    """Return material ratios 0 to 1, and the heights (m, from the mean) that those shares reach."""
+    ratio = np.linspace(0.0, 1.0, classes + 1)
+    return ratio, np.nanquantile(z, 1.0 - ratio) - np.nanmean(z)
+
+
+def core_parameters(z: Array) -> dict[str, float]:
+    """Return Sk, Spk, Svk (m) by the line over the flattest 40 % of the curve (ISO 25178-2)."""
+    ratio, height = material_ratio(z)
+    width = round(CORE * CLASSES)
+    first = int(np.argmin(height[:-width] - height[width:]))
+    core = slice(first, first + width + 1)
+    fall, top = np.polyfit(ratio[core], height[core], 1)
+    peaks, dales = height - top, top + fall - height
+    return {"Sk": float(-fall), "Spk": _reduced(peaks), "Svk": _reduced(dales)}
+
+
+def _reduced(beyond: Array) -> float:
+    """Return the height of the triangle whose base and area are those beyond the core."""
+    share = float(np.mean(beyond > 0))
+    return 2.0 * float(np.maximum(beyond, 0.0).mean()) / share if share else 0.0
 
 
 def nayak(z: Array, pixel: Pixel) -> float:

@@ -13,13 +13,14 @@ import numpy as np
 from refimpl.grid import Array
 from refimpl.measured.areal_parameters import (
     Autocorrelation,
+    core_parameters,
     developed_area,
     height_parameters,
     implausible_slope,
+    material_ratio,
     mean_square_slopes,
     nayak,
 )
-from refimpl.measured.material_ratio import core_parameters, material_ratio
 from refimpl.measured.measured_surface import MeasuredSurface
 from refimpl.measured.missing_points import fill
 from refimpl.measured.roughness_fit import RoughnessFit, fit_roughness

@@ -60,7 +60,6 @@ def read_elsewhere(path: Path, load: Callable[[], T]) -> T:
 
 
 def _reader() -> subprocess.Popen[bytes]:
-    """Return the living reader, started where there is none."""
     own = os.getpid()
     if own not in _started or _started[own].poll() is not None:
         _started[own] = subprocess.Popen(

@@ -4,6 +4,9 @@ Forward unnormalised, backward ``1/n``; real fields have half a spectrum along t
 complex transforms find their numbers side by side: a tenth of an application quicker than the other way
 about. ducc0 goes on from the library that SciPy uses: it writes into a given array, and to rounding both
 find the same.
+
+Kernels that are even or odd around both circles are transformed from a quarter of them, by cosines and sines:
+quarters hold the offsets from 0 to half a circle, and no kernel is spread over its circles first.
 """
 
 from __future__ import annotations
@@ -145,3 +148,23 @@ fourier = best_installed()
 def threads(points: int) -> int:
     """Return the threads for a transform of that many points: one where it is soon over."""
     return allowed_threads() if points >= fourier.worthwhile else 1
+
+
+def even_hat(quarter: Array, workers: int) -> Array:
+    """Return the real symbols of a kernel even along both axes. The quarter may be overwritten."""
+    return _mirrored(fourier.even_plane(quarter, workers), 1.0)
+
+
+def odd_hat(along_x: Array, along_y: Array | None, workers: int) -> Complex:
+    """Return the symbols of kernels odd along the first axis and the second; zero opposite 0."""
+    sines = _mirrored(fourier.odd_plane(along_x, workers), 1.0)
+    if along_y is not None:
+        sines += _mirrored(fourier.odd_plane(along_y.T, workers).T, -1.0)
+    hat = np.zeros(sines.shape, dtype=np.complex128)
+    np.negative(sines, out=hat.imag)
+    return hat
+
+
+def _mirrored(half: Array, sign: float) -> Array:
+    """Continue around the second axis' circle, with that sign beyond its half."""
+    return np.concatenate([half, sign * half[:, -2:0:-1]], axis=1)

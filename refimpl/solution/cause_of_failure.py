@@ -36,7 +36,6 @@ def _pressure(evidence: Evidence) -> str | None:
 
 
 def _coupling(evidence: Evidence) -> str | None:
-    """Describe a coupling stronger than what the production solver's updates reduce."""
     problem = evidence.problem
     strength = abs(problem.friction.slope * problem.elasticity.coupling_ratio)
     if evidence.plan.method == "dense" or strength <= _STRONG_COUPLING:
@@ -57,7 +56,6 @@ def _tilt(evidence: Evidence) -> str | None:
 
 
 def _excluded(evidence: Evidence) -> str | None:
-    """Describe an active set of tau that is less than half of the contact."""
     excluded, contact = (np.count_nonzero(x) for x in (evidence.state.excluded, evidence.state.contact))
     if 2 * excluded <= contact:
         return None

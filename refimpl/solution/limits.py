@@ -55,7 +55,6 @@ def model_warnings(evidence: Evidence) -> tuple[ModelWarning | Notice, ...]:
 
 
 def _plastic_notes(evidence: Evidence) -> list[Notice]:
-    """Return notes on a missing hardness and on effects of yield that are not modelled."""
     pair, state = evidence.problem.pair, evidence.state
     area = state.contact_area
     if pair.softer_hardness is None:
@@ -252,7 +251,6 @@ def _correlation(evidence: Evidence) -> ModelWarning | None:
 
 
 def _data(evidence: Evidence) -> ModelWarning | None:
-    """Warn that measured heights and arrays are sampled, not averaged."""
     points = max(evidence.problem.grid.spacings) / (evidence.scene.pitch or math.inf)
     text = (
         f"{points:.2g} points of a surface's data per element: points between the elements' centres are not "

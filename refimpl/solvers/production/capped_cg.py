@@ -37,19 +37,16 @@ class CappedCG(ProjectedCG):
         self._move_to_cap(pressure >= cap * (1 - VANISHING))
 
     def copy(self) -> Self:
-        """Return CG with a state of its own."""
         other = super().copy()
         other.capped = self.capped.copy()
         return other
 
     @property
     def contact(self) -> Mask:
-        """Free and capped elements."""
         return self.free | self.capped
 
     @property
     def pressure(self) -> Array:
-        """``f`` on the window (Pa)."""
         return self._vectors.scatter(self._pressing) + self._cap * self.capped
 
     @property

@@ -101,13 +101,11 @@ def _prolonged(problem: Problem, start: InitialGuess) -> tuple[Window, Array, Ar
 def _operators(
     problem: Problem, window: Window, counter: Counter, tolerance: float
 ) -> tuple[WindowInfluence, Apply]:
-    """Return the influence of a window on itself, and its preconditioner."""
     operator = window_influence(problem.grid, problem.direction, window, counter, tolerance)
     return operator, SpectralPreconditioner(operator, problem.elasticity.symbol(operator.symbol))
 
 
 def _from_winkler(problem: Problem, counter: Counter, tolerance: float) -> LevelSolver:
-    """Return the solver of a grid without an initial guess."""
     operator, precondition = _operators(problem, problem.grid.window, counter, tolerance)
     return LevelSolver(problem, operator, precondition, winkler_pressure(problem))
 
