@@ -118,7 +118,6 @@ class _Grids:
         return self.each(lambda result: result.numbers[name])
 
     def finest(self, name: str) -> float:
-        """Return the magnitude of the finest grid's number."""
         return abs(self.results[-1].numbers[name])
 
     def peak_scatter(self, unit: float) -> Array:

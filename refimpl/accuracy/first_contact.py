@@ -66,7 +66,6 @@ def _presses(features: GridFeatures, share: float) -> bool:
 
 
 def _at(features: GridFeatures, share: float) -> GridFeatures:
-    """Return the features at that share of the approach, by the exponents of Hertz contact."""
     numbers = {
         name: value * share ** HERTZ_EXPONENTS.get(name, 0.0) for name, value in features.numbers.items()
     }

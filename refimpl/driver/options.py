@@ -100,7 +100,6 @@ class Options:
         require_number("load", scene.load, allowed, at_most=most)
 
     def _refuse_doubtful_maps(self) -> None:
-        """Refuse a map whose slopes say that its unit or pixel is wrong, before its load is."""
         for name in ("lower", "upper"):
             for k, part in enumerate(self.scene.parts(name)):
                 if part.pitch(self.scene.lengths) is None:

@@ -122,7 +122,6 @@ class _Refinement:
         return data_error(self.scene, self.scene.refined(M))
 
     def until(self, features_at: Callable[[int], GridFeatures]) -> Refinement:
-        """Solve grid after grid by ``features_at`` until the accuracy is reached, or no longer to be."""
         return refine_until(
             features_at,
             self._accuracy,

@@ -138,7 +138,6 @@ def _of_file(path: Path) -> tuple[Cells, str]:
 
 
 def _without_index(cells: Cells) -> Cells:
-    """Return the lines without an unnamed first column of whole numbers from 0 or 1 on."""
     header, counts = cells[0][1], [row[0] for _, row in cells[1:]]
     if header[0] or counts not in ([str(k + first) for k in range(len(counts))] for first in (0, 1)):
         return cells

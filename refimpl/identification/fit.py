@@ -102,7 +102,6 @@ def fit_rows(
 
 
 def _check_slopes(responses: Sequence[Response], further: Sequence[str], theta: Array) -> None:
-    """Raise `NotConverged` where mu does not depend on a further parameter at any load."""
     for j, name in enumerate(further, start=BOUNDED):
         if not any(response.slopes[j] for response in responses):
             value = math.exp(theta[j])

@@ -164,7 +164,6 @@ def _of_row(refused: InputError, rows: Sequence[Row]) -> InputError:
 def _proposal(
     scene: Scene, forward: Forward, result: Identification, parts: Mapping[str, Array], realisations: int
 ) -> Proposal | None:
-    """Return the further loads, measured as well as the present ones in the median."""
     rows, theta = result.rows, result.fitted.theta
     trials = trial_responses(scene, rows, forward, theta, realisations)
     relative = float(np.median([row.u_mu / max(row.mu, row.u_mu) for row in rows]))

@@ -144,7 +144,6 @@ class _Layout:
         return bool(_NUMBER.fullmatch(cell) or (self.separator != "," and _COMMA_NUMBER.fullmatch(cell)))
 
     def unknown(self, cells: Iterable[str]) -> list[str]:
-        """Return the entries that are neither numbers nor missing."""
         return [c for c in cells if c and c.lower() not in NOT_MEASURED and not self.is_number(c)]
 
     def is_data(self, line: str) -> bool:

@@ -55,7 +55,6 @@ def refuse_huge(path: Path, heights: Array) -> None:
 
 
 def _refuse_external_data(path: Path) -> None:
-    """Raise `InputError` for an HDF5 file that takes bytes from other files."""
     try:
         import h5py
     except ImportError:  # nothing can read such a file then

@@ -125,7 +125,6 @@ def _first(order: NDArray[np.intp], count: int, gap: Array) -> Mask:
 
 
 def _rising(gap: Array) -> NDArray[np.intp]:
-    """Return all elements from the lowest on, equal ones in the grid's order."""
     return np.argsort(gap, axis=None, kind="stable")
 
 

@@ -154,7 +154,6 @@ def _body_to_dict(body: Body) -> dict[str, Any]:
 
 
 def _given(made: object, keys: Iterable[str]) -> dict[str, Any]:
-    """Return the values of these keys, without those that are not set."""
     values = {key: getattr(made, key) for key in keys}
     return {key: value for key, value in values.items() if value is not None}
 

@@ -20,7 +20,6 @@ def cause_of_failure(evidence: Evidence) -> str | None:
 
 
 def _hardness(evidence: Evidence) -> str | None:
-    """Describe a load beyond what pressures up to the hardness carry on the slopes of the last state."""
     most = evidence.problem.largest_load(evidence.state.slopes)
     if evidence.problem.load is None or evidence.problem.load <= most:
         return None

@@ -159,7 +159,6 @@ def _adhesion(evidence: Evidence) -> Notice | None:
 
 
 def _area_missing(evidence: Evidence, hardness: float) -> str:
-    """Return the text on an elastic area below P / H, the least area at the hardness."""
     least = evidence.state.forces.normal / hardness / evidence.state.contact_area - 1
     return f" (at the hardness A is at least P/H, {least:.1%} more)" if least > 0 else ""
 
@@ -232,7 +231,6 @@ def _expected_size(evidence: Evidence) -> str:
 
 
 def _is_concave(body: Body, sign: int) -> bool:
-    """Return whether its paraboloids together are hollow: a positive radius below, a negative one above."""
     return sign * sum(1 / part.radius for part in body.surface.parts if isinstance(part, Sphere)) > 0
 
 

@@ -126,7 +126,6 @@ class _Scheme:
         self._periodic_hat: Array = problem.elasticity.symbol(scipy.fft.rfft2(row).real)
 
     def result(self) -> SolverResult:
-        """Solve the balance under the rule for tau's active set that all solvers share."""
         ended = iterate(self, self.problem, self.tolerance)
         every = (*self.trace.coarser, self.trace)
         counts = {
@@ -155,7 +154,6 @@ class _Scheme:
         return self.pressure > 0
 
     def copy(self) -> _Scheme:
-        """Return the scheme as it is: arrays are replaced, never changed."""
         return copy(self)
 
     def restore(self, copied: _Scheme) -> None:

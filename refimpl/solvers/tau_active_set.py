@@ -226,5 +226,4 @@ def _loses_most(excluded: Mask, contact: Mask) -> bool:
 
 
 def _loses(active: Mask) -> ContactTest:
-    """Return the test whether elements of an active set are not in contact."""
     return lambda contact: bool(np.any(active > contact))

@@ -115,7 +115,6 @@ class CappedCG(ProjectedCG):
         self._separation = None
 
     def _release(self, lifted: Mask) -> None:
-        """Make capped elements free again, with the pressure that they have."""
         if lifted.any():
             pressure = self.pressure
             self.capped &= ~lifted

@@ -193,7 +193,6 @@ class ProjectedCG:
         return direction
 
     def _carried_over(self, quotient: float) -> Array:
-        """Return the last direction times a quotient, on the present contact set."""
         assert self._direction is not None
         direction = quotient * self._direction
         return self._projected(direction) if self._exchanged else direction
