@@ -97,7 +97,11 @@ def allowed_by(read: Callable[[Table], object], table: Table, key: str, wrong: o
 
 
 def type_in_words(hint: object) -> str:
-    """Return an annotated type in words."""
+    """Return an annotated type in words.
+
+    >>> type_in_words(float | tuple[float, float] | None)
+    'number or [number, number]'
+    """
     if get_origin(hint) in (Union, types.UnionType):
         words = [type_in_words(one) for one in get_args(hint) if one not in (type(None), Any)]
         return " or ".join(dict.fromkeys(words))
