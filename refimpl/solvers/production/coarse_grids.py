@@ -64,7 +64,11 @@ def _coarser(shape: Shape) -> Shape:
 
 
 def coarse_tolerance(shape: Shape) -> float:
-    """Return the residual of a coarse grid, below the error of the next start's interpolation."""
+    """Return the residual of a coarse grid, below the error of the next start's interpolation.
+
+    >>> coarse_tolerance((256, 256)), coarse_tolerance((1024, 512))
+    (0.001, 0.0005)
+    """
     return COARSE_TOLERANCE * min(1.0, COARSE_SIDE / max(shape))
 
 
