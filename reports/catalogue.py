@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fnmatch import fnmatchcase
 
 import numpy as np
@@ -248,23 +247,6 @@ ROUGH = (
         marker=True,
     ),
     curves(
-        "reference/self-affine-[ks]*",
-        "Slope of the area-load line of self-affine surfaces over Nayak's parameter, by Hurst exponent.",
-        "alpha",
-        {"kappa": "mean of eight realisations", "kappa, H = 0.3": "H = 0.3", "kappa, H = 0.8": "H = 0.8"},
-        exact={
-            "Bush, Gibson and Thomas": "Bush, Gibson and Thomas 1975",
-            "simulations, low": "lowest published simulation",
-            "Persson": "Persson 2001",
-        },
-        band=("standard error", "standard error"),
-        xlabel="Nayak's parameter",
-        ylabel="A E* rms gradient / P",
-        height=4.6,
-        log="x",
-        marker=True,
-    ),
-    curves(
         "identification/effects",
         "Residuals of a fit of tau and beta: one outlier stands apart, a wrong surface bends all of them.",
         "load (N)",
@@ -282,35 +264,7 @@ ROUGH = (
     ),
 )
 
-TIMED = ("paper", "production", "NNLS", "L-BFGS-B")
-
-
-def _table2_seconds(data: Data) -> Data:
-    """Return the seconds of each method over the grids of the paper's scheme; none where a method ends
-    earlier."""
-    seconds = {name: dict(zip(data[f"{name}: M"], data[f"{name}: s"], strict=True)) for name in TIMED}
-    grids = data["paper: M"]
-    return {"M": grids, **{name: [by_grid.get(M) for M in grids] for name, by_grid in seconds.items()}}
-
-
-BY_GRID = (
-    replace(
-        curves(
-            "variational/table2-growth",
-            "Processor time on the same scene; the methods took turns on every grid.",
-            "M",
-            {name: name for name in TIMED},
-            xlabel="elements per side",
-            ylabel="processor time (s)",
-            log="xy",
-            marker=True,
-        ),
-        needs=tuple(f"{name}: {column}" for name in TIMED for column in ("M", "s")),
-        derived=_table2_seconds,
-    ),
-)
-
-DECLARED = (*REPRODUCTION, *APPENDIX, *SMOOTH, *ROUGH, *BY_GRID)
+DECLARED = (*REPRODUCTION, *APPENDIX, *SMOOTH, *ROUGH)
 
 
 def figures_of(case_id: str) -> list[Figure]:

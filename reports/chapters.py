@@ -102,9 +102,9 @@ CHAPTERS = (
     Chapter(
         "costs",
         "Appendix III: costs",
-        "Seconds beside published codes at one recomputed error, and the cost of an accuracy.",
+        "Seconds beside published codes at one recomputed error.",
         ("benchmarks",),
-        ("benchmarks", "accuracy_costs"),
+        ("benchmarks",),
     ),
 )  # fmt: skip
 

@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 
 import refimpl as rf
 from appendix_a.fem.coefficient_map import CoefficientMap
+from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.model.problem import Terms
 from refimpl.planning.plan import Plan, make_plan
 from refimpl.scene.discretise import discretise
@@ -28,7 +29,7 @@ from refimpl.surfaces import surface_from_dict
 from refimpl.surfaces.from_table import KINDS
 from reports.results import check
 from tests.generated import instances, plain
-from verification.coverage.store import GridSolve, grid_solves, refine
+from verification.coverage.building import features_of
 from verification.framework.case import Case, Measured, Metric, Result, Tier
 from verification.framework.runner import Run as CasesRun
 from verification.sweep.export import header, to_csv
@@ -117,13 +118,9 @@ def test_a_surface_given_by_its_gradient_comes_back_by_its_gradient() -> None:
 
 
 @FEW
-@given(st.lists(instances(GridSolve, KNOWN), min_size=1, max_size=3, unique_by=lambda one: (one.seed, one.M)))
-def test_solves_of_a_store(tmp_path_factory: pytest.TempPathFactory, made: list[GridSolve]) -> None:
-    store = tmp_path_factory.mktemp("solves") / "store.jsonl"
-    solved = {(one.seed, one.M): one for one in made}
-    for one in made:
-        refine(store, [one.seed], [one.M], lambda seed, M: solved[seed, M])
-    assert [plain(one) for one in grid_solves(store)] == [plain(one) for one in made]
+@given(instances(GridFeatures, KNOWN))
+def test_features_of_a_grid(made: GridFeatures) -> None:
+    assert plain(features_of(json.loads(json.dumps(asdict(made))))) == plain(made)
 
 
 def test_rows_of_a_sweep(tmp_path: Path) -> None:

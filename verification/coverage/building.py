@@ -15,10 +15,11 @@ from typing import Any
 import refimpl as rf
 from refimpl.accuracy.contact_edge import NO_FACES
 from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.accuracy.peak import Peak
 from refimpl.errors import InputError
+from refimpl.grid.straight_edges import StraightEdges
 from refimpl.model.materials import Pair
 from verification.coverage.class_scenes import CLASSES, GRIDS, scene
-from verification.coverage.store import features_of
 from verification.coverage.textures import RoundedPunch
 from verification.output.files import Progress, appending
 from verification.output.provenance import provenance
@@ -47,6 +48,16 @@ class Solved:
     seed: int
     grids: tuple[GridFeatures, ...]
     exact: Mapping[str, float]
+
+
+def features_of(record: dict[str, Any]) -> GridFeatures:
+    """Return the features that `dataclasses.asdict` made plain."""
+    peaks = {name: Peak(**record[name]) for name in ("peak", "first_contact")}
+    straight = {name: StraightEdges(**record[name]) for name in ("straight", "plastic_straight")}
+    tuples = {name: tuple(record[name]) for name in ("faces", "highest_areas")}
+    grid = record["grid"]
+    restored = rf.Grid(tuple(grid["shape"]), tuple(grid["lengths"]), grid["periodic"])
+    return GridFeatures(**{**record, **peaks, **straight, **tuples, "grid": restored})
 
 
 def exact_numbers(one: rf.Scene) -> dict[str, float]:
