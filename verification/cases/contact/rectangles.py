@@ -1,9 +1,9 @@
-"""Rectangular domains and oblong elements: both solvers and closed forms."""
+"""Rectangular domains and oblong elements: the paper's scheme and closed forms."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 
@@ -26,42 +26,6 @@ from verification.scenes.rectangles import rectangles
 def trials() -> tuple[Trial, ...]:
     """Return the scenes, each solved once for all rows."""
     return cross_check.ended_well(rectangles())
-
-
-def numbers_difference(trial: Trial) -> float:
-    """Return the largest of the differences that `cross_check` judges one by one, and that of the corrected
-    area."""
-    corrected = abs(trial.dense.contact_area_corrected - trial.fft.contact_area_corrected)
-    return max(
-        corrected / trial.dense.contact_area, *(difference(trial) for difference in cross_check.NUMBERS)
-    )
-
-
-def contact_difference(trial: Trial) -> float:
-    """Return the largest difference of the pressures over the peak; infinite on another contact set."""
-    if not np.array_equal(trial.dense.contact, trial.fft.contact):
-        return math.inf
-    return cross_check.pressure_difference(trial)
-
-
-@family(
-    "difference, title, claim, tolerance_reason",
-    {
-        "rectangles/dense-pressure": (
-            contact_difference, "Dense reference against production solver on rectangles",
-            "on rectangles with square and oblong elements both solvers find the same contact, and pressures "
-            "that agree to 1e-9 of the peak",
-            "both solvers have the tolerance 1e-12; a thousand times that"),
-        "rectangles/dense-numbers": (
-            numbers_difference, "Numbers of both solvers on rectangles",
-            "mu, Q / N, A, the perimeter-corrected A and the approach of both solvers agree to 1e-9",
-            "as for pressures"),
-    },
-    metric="at_most", tolerance=1e-9, source=cross_check.SOURCE,
-)  # fmt: skip
-def both_solvers(difference: Callable[[Trial], float]) -> Measured:
-    """Judge the largest difference of all scenes."""
-    return worst_of({trial.name: difference(trial) for trial in trials()})
 
 
 @case("rectangles/paper-scheme", metric="at_most", tolerance=1e-4)

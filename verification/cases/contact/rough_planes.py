@@ -113,17 +113,3 @@ def rough_plane_slope() -> Measured:
         "Persson": rough_plane.persson_area(LOADS),
     }
     return Measured(float(kappa[1]), (low + high) / 2, 0.0, "", data)
-
-
-@case("reference/rough-plane-doubling", metric="absolute", tolerance=0.1)
-def rough_plane_doubling() -> Measured:
-    """Rough plane: twice the load, nearly twice the area.
-
-    Claim: Roughness on all scales makes the area nearly proportional to the load, where one sphere has
-    2^(2/3)
-    Source: Archard 1957 (2/3, 8/9, 26/27, 1); Greenwood and Williamson 1966
-    Tolerance: between Archard's second level, 2^(8/9) = 1.85, and 2: centre 1.93; measured 1.93
-    """
-    areas = np.mean(area_curves(192), axis=0)
-    ratios = areas[1:] / areas[:-1]
-    return Measured(float(np.mean(ratios)), (2.0 + 2 ** (8 / 9)) / 2, 0.0, "", {"area ratio": ratios})
