@@ -157,18 +157,6 @@ ROUGH = (
         marker=True,
     ),
     curves(
-        "surfaces/ensemble",
-        "Autocorrelation of an ensemble of rough surfaces, and its difference from Eq. (9).",
-        "lag / l",
-        {"estimate": "ensemble"},
-        exact={"eq9": "Eq. (9)"},
-        band=("standard error", "one standard error"),
-        xlabel="lag / correlation length",
-        ylabel="autocorrelation",
-        difference="difference",
-        height=WITH_DIFFERENCE,
-    ),
-    curves(
         "surfaces/self-affine-psd",
         "Power of a self-affine surface in bands of a third of an octave, over the specified one.",
         "q",
