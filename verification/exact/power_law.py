@@ -60,15 +60,6 @@ class PowerLaw:
         shape = np.sqrt(1 - rho2) * hyp2f1(1 - n / 2, 1, 1.5, 1 - rho2)
         return np.asarray(self.modulus * self._kappa * self.coefficient * n * a ** (n - 1) / np.pi * shape)
 
-    @property
-    def area_exponent(self) -> float:
-        """Area grows as load to this power: 2/(n + 1); doubling the load multiplies the area by 2 to it.
-
-        >>> PowerLaw(1.0, 1.0, 1.0, 1.0).area_exponent      # cone: area proportional to load
-        1.0
-        """
-        return 2 / (self.exponent + 1)
-
 
 @dataclass(frozen=True)
 class Cone:

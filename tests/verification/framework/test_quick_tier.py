@@ -16,7 +16,6 @@ NIGHTLY = {
     "accuracy/pulled", "accuracy/stress-similarity", "accuracy/tau-shares",
     "appendix-fem/confined", "appendix-fem/correction", "appendix-fem/first-order", "appendix-fem/remainder",
     "appendix-wedge/double-precision", "appendix-wedge/enclosures", "appendix-wedge/faces",
-    "appendix-wedge/two-precisions",
     "capped/dense-fft", "capped/sphere-areas", "capped/sphere-kogut-etsion",
     "capped/sphere-rings",
     "cross-check/approach", "cross-check/area", "cross-check/binormal", "cross-check/contact-sets",
