@@ -35,7 +35,6 @@ EXCEPTIONS: dict[tuple[str, str], str] = {
     ("verification/cases/contact/rough_planes.py", "summits"): SUMMITS,
     ("verification/solver_suite/check.py", "left out"): FAULT,
     ("refimpl/solution/rough_contact.py", "summits"): SUMMITS,
-    ("verification/cases/contact/rough_theories.py", "summits"): SUMMITS,
     ("verification/exact/rough_plane.py", "summits"): SUMMITS,
     ("verification/exact/greenwood_tripp.py", "summit"): SUMMITS,
     ("verification/exact/greenwood_tripp.py", "summits"): SUMMITS,
