@@ -8,14 +8,11 @@ from dataclasses import replace
 from functools import cache
 
 import refimpl as rf
-from refimpl.driver.options import Options
 from refimpl.model.problem import Terms
 from refimpl.operators.fft import Counter
-from refimpl.planning.terms import LABELS
 from refimpl.scene.discretise import discretise
 from refimpl.solvers.production.nested_solver import solve_fft
 from verification.cases import Measured, case
-from verification.cli.explain import explained
 
 SOURCE = "the planner's own promise (README): what a scene does not require is neither built nor applied"
 BARE = Terms(coupled=False, oblique=False, tilted=False)
@@ -129,25 +126,3 @@ def memory() -> Measured:
     whole = peak(lambda: rf.solve(replace(scene, friction=rf.Friction(15e6, 0.08)), M))
     data = {"bytes per element": {"bare": alone, "planned": planned, "with friction": whole}}
     return Measured(planned / (alone + RETURNED), data=data)
-
-
-@case("planning/explained", metric="equal", tolerance=0.0, source=SOURCE)
-def explanation() -> Measured:
-    """--explain says so.
-
-    Claim: for a frictionless smooth scene and for identical materials without slope terms the printed plan
-    has every term out
-    Tolerance: lines are counted
-    """
-    missing = []
-    for name in ("frictionless, smooth", "identical materials, no slopes"):
-        scene, oblique = scenes()[name]
-        options = Options(scene=scene, grid=M, requested=Terms(oblique=oblique))
-        text = explained(options, options.plan(), name)
-        rows = {line.strip() for line in text.splitlines()}
-        missing += [
-            f"{name}: {term}"
-            for term in LABELS.values()
-            if not any(row.startswith(term) and row.removeprefix(term).split()[0] == "out" for row in rows)
-        ]
-    return Measured(len(missing), 0.0, note="; ".join(missing))
