@@ -147,7 +147,7 @@ SMOOTH = (
 
 ROUGH = (
     curves(
-        "capped/sphere-kogut-etsion",
+        "capped/sphere-k*",
         "{title}: mean pressure of the capped model, and the published law.",
         "load / load of first yield",
         {"mean pressure / H, cap": "pressure cap", "mean pressure / H, law": "finite-element law"},

@@ -26,8 +26,7 @@ def _table3(canvas: Canvas, data: Data) -> None:
     axes = canvas.add_subplot()
     mesh, rms = _values(data, "mesh"), _values(data, "sigma_e (um)")
     ratio = _values(data, "ours") / _values(data, "printed")
-    u = data.get("u 95 %") or np.sqrt(2) * _values(data, "half width 95 %")  # older files: no rounding
-    half = np.array(u, dtype=float) / _values(data, "printed")
+    half = _values(data, "u 95 %") / _values(data, "printed")
     for k, sigma in enumerate(np.unique(rms)):
         here = rms == sigma
         x = np.log2(mesh[here]) + 0.06 * (k - 1.5)
@@ -217,7 +216,7 @@ def _symbol(name: str) -> str:
 REPRODUCTION = (
     Figure(
         "reproduction/table3-[amp]*",
-        ("sigma_e (um)", "mesh", "printed", "ours", "half width 95 %"),
+        ("sigma_e (um)", "mesh", "printed", "ours", "u 95 %"),
         _table3,
         "{title}: this code over the printed value; bars are u (95 %), beyond which a difference counts.",
     ),

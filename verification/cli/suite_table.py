@@ -48,7 +48,7 @@ def published(path: Path = PUBLISHED) -> list[dict[str, Any]]:
     if not path.is_file():
         return []
     document: Any = read_result(path)
-    suite = document.get("suite", {}).get("version", "unnumbered")
+    suite = document["suite"]["version"]
     metrics = {case["id"]: case["metric"] for case in document["cases"]}
     entries = [e for e in document["entrants"] if e["installed"] and e["role"] != "trap"]
     for entry in entries:

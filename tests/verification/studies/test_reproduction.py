@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -53,16 +52,12 @@ def test_no_interval_without_values(values: list[float]) -> None:
         ensemble.estimate(values)
 
 
-def test_rows_are_kept_where_asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(ensemble.FOLDER, str(tmp_path / "stores"))
+def test_a_column_has_the_rows_of_its_coordinates() -> None:
     study = study_from_dict({"scene": "table1-rough", "vary": {"grid": [12]}, "realisations": 2})
-    monkeypatch.setattr(ensemble, "read_study", lambda name: study)
-    first = ensemble.rows_of.__wrapped__("small")
-    assert (tmp_path / "stores" / "small.sqlite").exists()
-    assert ensemble.rows_of.__wrapped__("small") == first == ensemble.rows(study)
-    assert len(ensemble.column(first, "contact_area", grid=12)) == 2
+    found = ensemble.rows(study)
+    assert len(ensemble.column(found, "contact_area", grid=12)) == 2
     with pytest.raises(LookupError):
-        ensemble.column(first, "contact_area", grid=13)
+        ensemble.column(found, "contact_area", grid=13)
 
 
 def test_an_ensemble_with_gaps_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
