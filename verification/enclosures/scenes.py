@@ -15,6 +15,7 @@ from refimpl.grid import Array
 from refimpl.planning.plan import Method
 
 SIDE = 2.0**-10
+QUANTUM = 2.0**-40  # m
 STEEL, COPPER, POLYMER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30), rf.Material(2.5e9, 0.38)
 SLIDING = rf.Friction(tau=0.8e6, beta=0.15)
 NONE = rf.Friction()
@@ -69,13 +70,13 @@ class EnclosedScene:
         return rf.solve(self.scene, self.M, method=method, tolerance=tolerance, **terms)
 
 
-def surface(M: int, seed: int, rms: float, radius: float | None = None, quantum: float = 2.0**-40) -> Array:
-    """Return white heights of this rms (m) on a bump of this radius (m), in multiples of ``quantum``."""
+def surface(M: int, seed: int, rms: float, radius: float | None = None) -> Array:
+    """Return white heights of this rms (m) on a bump of this radius (m), in multiples of `QUANTUM`."""
     z = rms * np.random.default_rng(seed).standard_normal((M, M))
     if radius is not None:
         x = ((np.arange(M) + 0.5) / M - 0.5) * SIDE
         z -= (x[:, None] ** 2 + x[None, :] ** 2) / (2 * radius)
-    return np.asarray(np.rint(z / quantum) * quantum)
+    return np.asarray(np.rint(z / QUANTUM) * QUANTUM)
 
 
 def scenes() -> tuple[EnclosedScene, ...]:

@@ -8,9 +8,10 @@ import numpy as np
 
 import refimpl as rf
 from verification.cases import Measured, case
-from verification.cases.contact.scenes import MODULUS, Array, centres, press
+from verification.cases.contact.scenes import MODULUS, Array, press
 from verification.exact import greenwood_tripp, rough_plane
 from verification.exact.greenwood_tripp import RoughSphere, gaussian_summits
+from verification.solver_suite.gaps import centres, waves
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 RADIUS, LOAD, SIDE = 0.14, 70.0, 2e-3
@@ -53,24 +54,6 @@ def greenwood_tripp_radius() -> Measured:
     return Measured(float(np.mean(radii)), model.effective_radius, uncertainty, "m", data)
 
 
-def self_affine(M: int, seed: int, *, longest: int = 4, shortest: int = 16) -> Array:
-    """Return periodic random heights ``(M, M)``: flat spectrum to wave ``longest``, Hurst exponent 0.8 to
-    ``shortest``.
-
-    The same continuous surface on every grid for a given seed: random waves are drawn by frequency, not by
-    point.
-    """
-    rng = np.random.default_rng(seed)
-    k = np.arange(-shortest, shortest + 1)
-    wave = np.hypot(k[:, None], k[None, :])
-    envelope = np.where((wave > 0) & (wave <= shortest), np.maximum(wave, longest) ** -1.8, 0.0)
-    amplitude = envelope * (rng.standard_normal(wave.shape) + 1j * rng.standard_normal(wave.shape))
-    spectrum = np.zeros((M, M), dtype=complex)
-    spectrum[k[:, None] % M, k[None, :] % M] = amplitude
-    heights = np.fft.ifft2(spectrum).real
-    return np.asarray(heights / np.std(heights))
-
-
 LOADS = (0.02, 0.04, 0.08)
 """Mean pressure over E* times rms gradient."""
 
@@ -80,7 +63,7 @@ def area_curves(M: int) -> Array:
     planes."""
     curves = []
     for seed in range(5):
-        heights = 1e-3 * self_affine(M, seed)
+        heights = 1e-3 * waves(M, seed, longest=4, shortest=16)
         slope = rough_plane.spectral_rms_gradient(heights, 1.0)
         gap = heights.max() - heights
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 import refimpl as rf
 from verification.cases import Measured
 from verification.framework.rates import fit_order
+from verification.solver_suite.gaps import centres
 
 Array = NDArray[np.float64]
 Gap = Callable[[Array, Array], Array]
@@ -36,12 +37,6 @@ SOFT = (1e9, 0.2)
 RIGID = (1e21, 0.2)
 MODULUS, COUPLING = dundurs(lower=SOFT, upper=RIGID)
 """E* (Pa) and d of the pair."""
-
-
-def centres(side: float, M: int) -> tuple[Array, Array]:
-    """Return the element centres from the middle of the square: x ``(M, 1)`` and y ``(1, M)`` (m)."""
-    x = (np.arange(M) + 0.5) / M * side - side / 2
-    return x[:, None], x[None, :]
 
 
 def press(

@@ -9,11 +9,12 @@ import numpy as np
 import refimpl as rf
 from refimpl.operators.fft import FFTInfluence
 from verification.cases import Measured, case, family
-from verification.cases.contact.scenes import MODULUS, Array, centres, measured_order, press
+from verification.cases.contact.scenes import MODULUS, Array, measured_order, press
 from verification.exact.hertz import Ellipse
 from verification.exact.patch import UNCERTAINTY as PATCH_UNCERTAINTY
 from verification.exact.patch import Patch
 from verification.exact.power_law import Cone
+from verification.solver_suite.gaps import centres
 
 ELLIPSE = Ellipse(load=1.0, curvature_x=2.0, curvature_y=6.0, modulus=MODULUS)
 CONE = Cone(load=1.0, slope=0.05, modulus=MODULUS)

@@ -9,16 +9,10 @@ import numpy as np
 import refimpl as rf
 from refimpl.model.friction import is_frictionless
 from verification.cases import Measured, case
-from verification.cases.contact.scenes import (
-    COUPLING,
-    MODULUS,
-    Array,
-    centres,
-    first_contact_approach,
-    press,
-)
+from verification.cases.contact.scenes import COUPLING, MODULUS, Array, first_contact_approach, press
 from verification.exact import fourier, jgh
 from verification.exact.westergaard import Wave
+from verification.solver_suite.gaps import centres
 
 AMPLITUDE, WAVELENGTH = 1e-3, 1.0
 GRIDS = (32, 48, 64, 96, 128)

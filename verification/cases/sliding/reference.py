@@ -7,11 +7,12 @@ from scipy.integrate import quad
 
 import refimpl as rf
 from verification.cases import Measured, case
-from verification.cases.contact.scenes import COUPLING, MODULUS, Array, centres, press
+from verification.cases.contact.scenes import COUPLING, MODULUS, Array, press
 from verification.cases.contact.waves import AMPLITUDE, WAVELENGTH, ridge
 from verification.exact.coupled_indentation import ShearedSphere
 from verification.exact.hertz import Sphere
 from verification.exact.sliding_wave import UNCERTAINTY, SlidingWave
+from verification.solver_suite.gaps import centres
 
 STAR = np.pi * MODULUS * AMPLITUDE / WAVELENGTH
 BETA = 0.8
