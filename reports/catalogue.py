@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fnmatch import fnmatchcase
 
 import numpy as np
 from matplotlib.figure import Figure as Canvas
 
-from reports.drawing import COLOURS, INK, Data, Figure, below, curves, label_ticks, look
+from reports.drawing import COLOURS, INK, MARKERS, Data, Figure, below, curves, label_ticks, look
 from reports.reproduction_figures import REPRODUCTION
 
 PLACES = ("crest", "flank", "valley")
 NEXT = {"+x 1": "downhill (+x)", "-x 1": "uphill (-x)", "across 1": "across"}
 QUANTITIES = {"mu": "$\\mu$", "A": "A", "f_max": "$p_{max}$", "Q": "Q (of F)"}
 TREATMENTS = ("correction", "near-field remedy")
+READINGS = "reading of the slope (degrees)"
+GROUPS = ("self", "in line", "across")
 
 
 def _error_map(canvas: Canvas, data: Data) -> None:
@@ -50,6 +53,37 @@ def _effect(canvas: Canvas, data: Data) -> None:
     below(canvas, canvas.axes[0])
 
 
+def _reach(canvas: Canvas, data: Data) -> None:
+    """Change of mu and f_max over the remedy's reach; dashed: the correction."""
+    reach = data["reach (elements)"]
+    for axes, key in zip(canvas.subplots(2, 1), ("mu", "f_max"), strict=True):
+        # Without friction mu is nearly zero, and a percentage of mu is meaningless
+        for k, name in enumerate(("with friction", "without friction")[: 1 if key == "mu" else 2]):
+            axes.plot(reach, data[f"{key}, {name}, remedy"], label=name, **look(k))
+            axes.plot(reach, data[f"{key}, {name}, correction"], "--", color=COLOURS[k])
+        axes.set_xscale("symlog", base=2, linthresh=1)
+        label_ticks(axes, reach)
+        label = f"change of {QUANTITIES[key]} (%)"
+        axes.set(xlabel="reach on the slope (elements)", ylabel=label)
+    below(canvas, axes)
+
+
+def _readings(canvas: Canvas, data: Data) -> None:
+    """Draw the largest error by body, coefficient and reading of the slope, beside 2 %."""
+    names = [name for name in data if name.endswith(GROUPS)]
+    axes = canvas.add_subplot()
+    for k, reading in enumerate(data[READINGS]):
+        errors = [data[name][k] for name in names]
+        axes.plot(errors, np.arange(len(names)), MARKERS[k], color=COLOURS[k], label=f"{reading} degrees")
+    axes.axvline(2.0, color=INK, linestyle=":")
+    axes.set_xscale("log")
+    axes.set_yticks(range(len(names)), [name.replace(", ", ",\n", 1) for name in names])
+    axes.invert_yaxis()
+    label_ticks(axes, (0.1, 0.5, 2, 10))
+    axes.set_xlabel("largest error (%)")
+    below(canvas, axes)
+
+
 WITH_DIFFERENCE = 5.0  # inches: a second panel for the difference from the exact curve
 
 APPENDIX = (
@@ -62,12 +96,26 @@ APPENDIX = (
         6.4,
     ),
     Figure(
+        "fem3d/less-than-two-percent",
+        (READINGS,),
+        _readings,
+        "Largest error on crest, flank or valley, by what 'less than 2 %' may mean; dotted: 2 %.",
+        5.6,
+    ),
+    Figure(
         "appendix-correction/paper-pair",
         tuple(f"{q}, {t}" for q in QUANTITIES for t in TREATMENTS),
         _effect,
         "{title}: what exact facet tractions and the paper's near-field remedy change; means over eight "
         "surfaces, 95 % intervals; dotted: the paper's largest rms slope.",
         9.0,
+    ),
+    Figure(
+        "appendix-correction/paper-remedy",
+        ("reach (elements)", "mu, with friction, remedy"),
+        _reach,
+        "The paper's remedy over how far coefficients are computed on the slope; dashed: the correction.",
+        5.6,
     ),
     curves(
         "appendix-figures/fig12",
@@ -147,7 +195,7 @@ SMOOTH = (
 
 ROUGH = (
     curves(
-        "capped/sphere-k*",
+        "capped/sphere-[kj]*",
         "{title}: mean pressure of the capped model, and the published law.",
         "load / load of first yield",
         {"mean pressure / H, cap": "pressure cap", "mean pressure / H, law": "finite-element law"},
@@ -155,6 +203,27 @@ ROUGH = (
         ylabel="mean contact pressure / H",
         log="x",
         marker=True,
+    ),
+    curves(
+        "surfaces/ensemble",
+        "Autocorrelation of an ensemble of rough surfaces, and its difference from Eq. (9).",
+        "lag / l",
+        {"estimate": "ensemble"},
+        exact={"eq9": "Eq. (9)"},
+        band=("standard error", "one standard error"),
+        xlabel="lag / correlation length",
+        ylabel="autocorrelation",
+        difference="difference",
+        height=WITH_DIFFERENCE,
+    ),
+    curves(
+        "surfaces/spectrum",
+        "Power of the periodic rough surface by wavenumber, over the Fourier transform of Eq. (9).",
+        "k l",
+        {"power / eq9": "ensemble"},
+        band=("standard error", "one standard error"),
+        xlabel="wavenumber x correlation length",
+        ylabel="power / that of Eq. (9)",
     ),
     curves(
         "surfaces/self-affine-psd",
@@ -165,6 +234,33 @@ ROUGH = (
         xlabel="wave number (rad/mm)",
         per_x=1e-3,
         ylabel="power / specified power",
+        log="x",
+        marker=True,
+    ),
+    curves(
+        "reference/rough-plane-slope",
+        "Contact fraction of a rough plane over the load.",
+        "p/(E* h')",
+        {"A/A0": "this code, mean"},
+        exact={"Persson": "Persson"},
+        xlabel="mean pressure / (E* rms gradient)",
+        ylabel="contact fraction",
+        marker=True,
+    ),
+    curves(
+        "reference/self-affine-[ks]*",
+        "Slope of the area-load line of self-affine surfaces over Nayak's parameter, by Hurst exponent.",
+        "alpha",
+        {"kappa": "mean of eight realisations", "kappa, H = 0.3": "H = 0.3", "kappa, H = 0.8": "H = 0.8"},
+        exact={
+            "Bush, Gibson and Thomas": "Bush, Gibson and Thomas 1975",
+            "simulations, low": "lowest published simulation",
+            "Persson": "Persson 2001",
+        },
+        band=("standard error", "standard error"),
+        xlabel="Nayak's parameter",
+        ylabel="A E* rms gradient / P",
+        height=4.6,
         log="x",
         marker=True,
     ),
@@ -186,7 +282,35 @@ ROUGH = (
     ),
 )
 
-DECLARED = (*REPRODUCTION, *APPENDIX, *SMOOTH, *ROUGH)
+TIMED = ("paper", "production", "NNLS", "L-BFGS-B")
+
+
+def _table2_seconds(data: Data) -> Data:
+    """Return the seconds of each method over the grids of the paper's scheme; none where a method ends
+    earlier."""
+    seconds = {name: dict(zip(data[f"{name}: M"], data[f"{name}: s"], strict=True)) for name in TIMED}
+    grids = data["paper: M"]
+    return {"M": grids, **{name: [by_grid.get(M) for M in grids] for name, by_grid in seconds.items()}}
+
+
+BY_GRID = (
+    replace(
+        curves(
+            "variational/table2-growth",
+            "Processor time on the same scene; the methods took turns on every grid.",
+            "M",
+            {name: name for name in TIMED},
+            xlabel="elements per side",
+            ylabel="processor time (s)",
+            log="xy",
+            marker=True,
+        ),
+        needs=tuple(f"{name}: {column}" for name in TIMED for column in ("M", "s")),
+        derived=_table2_seconds,
+    ),
+)
+
+DECLARED = (*REPRODUCTION, *APPENDIX, *SMOOTH, *ROUGH, *BY_GRID)
 
 
 def figures_of(case_id: str) -> list[Figure]:

@@ -102,9 +102,9 @@ CHAPTERS = (
     Chapter(
         "costs",
         "Appendix III: costs",
-        "Seconds beside published codes at one recomputed error.",
+        "Seconds beside published codes at one recomputed error, and the cost of an accuracy.",
         ("benchmarks",),
-        ("benchmarks",),
+        ("benchmarks", "accuracy_costs"),
     ),
 )  # fmt: skip
 

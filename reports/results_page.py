@@ -11,7 +11,7 @@ from typing import Any
 
 from reports.evidence import gathered
 from reports.result_tables import RUN
-from reports.result_tables.code import checks, codes, costs, coverage, studies
+from reports.result_tables.code import accuracy_costs, checks, codes, costs, coverage, studies
 from reports.result_tables.paper import claims, hertz, table_3
 from verification.output.result_files import read_results
 
@@ -37,6 +37,7 @@ def page(documents: Mapping[str, Any]) -> str:
         claims(evidence),
         coverage(documents),
         costs(documents["benchmarks"]),
+        accuracy_costs(documents["accuracy_costs"]),
         checks(documents, evidence),
         studies(documents),
         codes(documents["cross_code"]),

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+import itertools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from reports.evidence import Evidence
@@ -87,6 +88,50 @@ def _machines(runs: Iterable[Mapping[str, Any]]) -> list[str]:
 def _median(row: Mapping[str, Any] | None) -> float | None:
     """Return the median of the seconds of a benchmark's row; None for a code that was not timed."""
     return None if row is None or "seconds" not in row else row["seconds"]["median"]
+
+
+def accuracy_costs(costs: Mapping[str, Any]) -> str:
+    """Show the coarsest grid for each accuracy, by class of scene."""
+    labels = {"friction_coefficient_corrected": "μ, corrected", "contact_area_corrected": "A, corrected"}
+    labels["max_pressure"] = "p_max"
+    demands = sorted({entry["error"] for one in costs["classes"] for entry in one["prices"]}, reverse=True)
+    rows: list[Row] = []
+    for one in costs["classes"]:
+        offers = {(entry["quantity"], entry["error"]): entry for entry in one["prices"]}
+        for quantity in dict.fromkeys(quantity for quantity, _ in offers):
+            label = labels[quantity]
+            cells = (_cost(offers[quantity, demand], one["ladders"]) for demand in demands)
+            rows.append((one["class"], label, *cells, link("accuracy_costs")))
+    head = ("class of scenes", "number", *(f"{100 * demand:g} %" for demand in demands), "file")
+    text = (
+        "Coarsest grid (seconds) that keeps the relative error on itself and all finer ones, against a "
+        "grid of 2048² whose error bar is added, with friction and slopes. A median of three realisations "
+        "is given only where each of them meets the demand. *> 1024²*: at least one meets it on no grid, "
+        "because it needs a finer one or its reference is itself uncertain; in brackets how many meet it, "
+        "and the finest grid that these take."
+    )
+    return section("Cost and accuracy", text, head, rows)
+
+
+def _cost(entry: Mapping[str, Any], realisations: Sequence[Sequence[Mapping[str, Any]]]) -> str:
+    """Return the median grid and its seconds, or how many realisations meet the demand where not all do.
+
+    >>> ends = [[{"M": M, "errors": {"mu": e}} for M, e in ((32, 0.01), (1024, e))] for e in (0.01, None)]
+    >>> _cost({"quantity": "mu", "error": 0.03, "M": None, "seconds": None}, ends)
+    '> 1024² (1 of 2: 32²)'
+    """
+    if entry["M"] is not None:
+        return f"{entry['M']:.0f}² ({entry['seconds']:.2g})"
+    grids = [_coarsest(rows, entry["quantity"], entry["error"]) for rows in realisations]
+    met = [grid for grid in grids if grid is not None]
+    return f"> 1024² ({len(met)} of {len(grids)}: {max(met)}²)" if met else "> 1024²"
+
+
+def _coarsest(rows: Sequence[Mapping[str, Any]], quantity: str, demand: float) -> int | None:
+    """Return the coarsest grid that meets a demand together with all finer ones; None is unbounded."""
+    errors = [(row["M"], row["errors"].get(quantity)) for row in reversed(rows)]
+    met = list(itertools.takewhile(lambda at: at[1] is not None and at[1] <= demand, errors))
+    return met[-1][0] if met else None
 
 
 COUNTED = (*STATUSES[:1], RECORDED, *STATUSES[1:])

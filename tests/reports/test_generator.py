@@ -185,8 +185,7 @@ def test_a_figure_stands_on_the_page_once() -> None:
     other = law | {"mean pressure / H, law": [0.5, 0.8]}
     for second, number in ((dict(data), 1), (other, 2)):
         made = results(
-            case("capped/sphere-k", title="one", data=data),
-            case("capped/sphere-ke", title="one", data=second),
+            case("capped/sphere-k", title="one", data=data), case("capped/sphere-j", title="one", data=second)
         )
         assert len(Page(render(made)).images) == number
 

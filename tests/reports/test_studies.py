@@ -28,6 +28,8 @@ BARS = Names(held=0.951, held_at_worst=0.902, usable=0.83, held_of_usable=None, 
              median_bar_over_error=None)  # fmt: skip
 OTHERS = BARS | {"class": None, "number": None, "scenes": 7, "held_of_usable": 0.8,
                  "median_bar_over_error": 3.456}  # fmt: skip
+OFFERS = [{"quantity": "mu", "error": 0.001, "M": None},
+          {"quantity": "mu", "error": 0.02, "M": 48, "transforms of 256": 1.2345}]  # fmt: skip
 STATES = [("load", "fft", "right", d) for d in (12, 3, 7)] + [("load", "fft", "wrong", 5)]
 STATES += [("load", "dense", "detected failure", 1), ("scale", "fft", "crash", 1)]
 EXTREMES = Names(
@@ -107,6 +109,7 @@ def run(M: int, ours: float, theirs: float) -> dict[str, Any]:
 
 BENCHMARKS = {"runs": [run(128, 1.0, 2.0), run(256, 2.0, 6.0), run(128, 1.0, 4.0)]}
 DOCUMENTS: dict[str, Any] = {
+    "accuracy_costs": {"classes": [Names(prices=OFFERS)]},
     "benchmarks": BENCHMARKS,
     "coverage_corrected": {"table": [BARS, OTHERS]},
     "cross_code": CODES,
@@ -115,6 +118,7 @@ DOCUMENTS: dict[str, Any] = {
     "hypothesis": Names(slices=SLICES, processor_seconds=1),
 }
 ROWS: list[tuple[str, int, list[Any]]] = [
+    ("accuracy_costs", 0, [("class", "mu", "48 (1.23)", "finer")]),
     ("coverage_corrected", 0,
      [("class", "number", "scenes", "95.1%", "90.2%", "83%", "none", "0.012", "unbounded"),
       ("all", "all", 7, "95.1%", "90.2%", "83%", "80.0%", "0.012", "3.46")]),

@@ -35,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
     check_outputs([Path(options.scene), *files_of(scene)], json=options.json)
     rows = solve_grids(scene, sorted({*options.grids, options.reference // 2}), options.reference)
     found = {"scene": options.scene, "reference": options.reference, "grids": rows}
-    found |= {"prices": costs(rows), "shown": costs(rows, "bars")}
-    text = table(found["prices"], found["shown"])
-    emit(jsonable(found | {"provenance": provenance()}), options.json, text)
+    found |= {"prices": costs([rows]), "shown": costs([rows], "bars")}
+    shown = table([{"class": options.scene, **found}])
+    emit(jsonable(found | {"provenance": provenance()}), options.json, shown)
     return 0

@@ -1,4 +1,4 @@
-"""Cost of an accuracy: `rough-friction tradeoff`."""
+"""Cost of an accuracy: the table by class of scene, and `rough-friction tradeoff` for one scene."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ from pathlib import Path
 import pytest
 
 import refimpl as rf
+from reports.studies.accuracy_costs import build
 from tests.changed import changed
 from verification.benchmarks import cost_of_accuracy
-from verification.benchmarks.cost_of_accuracy import costs, solve_grids
+from verification.benchmarks.cost_of_accuracy import LOWER, class_scene, costs, solve_grids
 from verification.cli import main
+from verification.output.result_files import committed, read_result
 
 MU = "friction_coefficient_corrected"
 QUANTITIES = {MU, "contact_area_corrected", "max_pressure"}
@@ -45,8 +47,17 @@ def test_a_demand_is_met_by_the_error_before_the_bar_shows_it() -> None:
         {"M": M, "transforms of 256": M, "seconds": 1.0, "errors": {MU: error}, "bars": {MU: bar}}
         for M, error, bar in ((32, 0.02, 0.2), (64, 0.009, 0.05), (128, 0.004, 0.009))
     ]
-    met, shown = ([row["M"] for row in costs(rows, key)] for key in ("errors", "bars"))
+    met, shown = ([row["M"] for row in costs([rows], key)] for key in ("errors", "bars"))
     assert (met, shown) == ([32, 32, 64, None], [64, 128, 128, None])  # of 10, 3, 1 and 0.3 %
+
+
+def test_a_class_costs_the_median_of_its_realisations() -> None:
+    def grids(seconds: float, error: float) -> list[dict[str, object]]:
+        row = {"M": 32, "transforms of 256": 2 * seconds, "seconds": seconds}
+        return [{**row, "errors": {"contact_area": error}}]
+
+    rows = costs([grids(1.0, 0.02), grids(5.0, 0.02), grids(3.0, 0.005)])
+    assert [row["seconds"] for row in rows] == [3.0, 3.0, None, None]  # errors of 10, 3, 1 and 0.3 %
 
 
 def test_an_unsettled_grid_meets_no_demand_and_an_unsettled_reference_judges_nothing(
@@ -65,7 +76,7 @@ def test_an_unsettled_grid_meets_no_demand_and_an_unsettled_reference_judges_not
     coarse, fine = solve_grids(rf.read_scene("hertz"), [8, 16], 32)
     name = "contact_area_corrected"
     assert coarse["errors"][name] < float("inf") == fine["errors"][name]
-    assert costs([coarse, fine])[0]["M"] is None
+    assert costs([[coarse, fine]])[0]["M"] is None
     stagnates(32)
     out = tmp_path / "t.json"
     assert main(["tradeoff", "hertz", "--grids", "8", "--reference", "32", "--json", str(out)]) == 1
@@ -82,3 +93,20 @@ def test_grids_are_numbers(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit, match="2"):
         main(["tradeoff", "hertz", "--grids", "8,x"])
     assert "'8,x' is no list of grids" in capsys.readouterr().err
+
+
+def test_the_command_makes_the_committed_document(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cost_of_accuracy, "solve_grids", lambda scene: solve_grids(scene, (16, 24), 32))
+    monkeypatch.setattr(cost_of_accuracy, "SEEDS", (1,))
+    cost_of_accuracy.main(["--json", str(tmp_path / "costs.json")])
+    made = read_result(tmp_path / "costs.json")
+    stored = committed("accuracy_costs")
+    assert [one["class"] for one in made["classes"]] == [one["class"] for one in stored["classes"]]
+    assert made["classes"][0]["prices"][0].keys() == stored["classes"][0]["prices"][0].keys()
+    (table,) = build(made).tables
+    assert len(table.rows) == 3 * len(LOWER)
+
+
+def test_seeds_of_the_smooth_ball_shift_the_grid() -> None:
+    first, second = (class_scene("smooth ball", seed) for seed in (1, 2))
+    assert second.lengths[0] - first.lengths[0] == pytest.approx(first.lengths[0] / 32 / 3)
