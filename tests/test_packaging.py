@@ -97,7 +97,7 @@ def test_the_model_needs_numpy_scipy_and_three_small_packages() -> None:
 
 
 OPTIONAL = (
-    "xarray", "h5netcdf", "h5py", "pandas", "dask", "distributed", "ducc0", "flint",
+    "xarray", "h5netcdf", "h5py", "pandas", "pyarrow", "dask", "distributed", "ducc0", "flint",
     "SurfaceTopography", "cosmic_ray", "tamaas", "ContactMechanics", "aspher",
 )  # fmt: skip
 

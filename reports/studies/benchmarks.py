@@ -5,14 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from reports.drawing import Data, Figure, curves
 from reports.exhibit import Cell, Column, Document, Exhibit, Table, table
 
 OURS = "refimpl"
+NAMES = {OURS: "this code, error bars", "refimpl-solver": "this code, solver alone", "aspher": "ASPHER"}
+NAMES |= {"aspher+options": "ASPHER, options set", "tamaas": "Tamaas"}
+"""Names of the codes in figures."""
 Row = Mapping[str, Any]
 
 
 def build(document: Document) -> Exhibit:
-    """Return a table for each surface."""
+    """Return a table for each surface, and seconds over the grid."""
     runs = document["runs"]
     newest = newest_rows(runs)
     kinds = list(dict.fromkeys(kind for kind, _ in newest))
@@ -31,6 +35,7 @@ def build(document: Document) -> Exhibit:
             f"Versions: {', '.join(versions)}.",
         ),
         [_table(kind, newest) for kind in kinds],
+        [_seconds(kind, newest) for kind in kinds],
     )
 
 
@@ -86,3 +91,29 @@ TIMES: dict[str, Column] = {
     ),
     "commit": "{commit!s:.12}",
 }
+
+
+def _seconds(kind: str, newest: Mapping[tuple[str, int], Sequence[Row]]) -> tuple[Figure, Data]:
+    """Return the median seconds over the grid, a curve for each code; this code's terms are in the tables."""
+    timed = [row for (of, _), rows in newest.items() if of == kind for row in rows if "seconds" in row]
+    codes = list(dict.fromkeys(row["code"] for row in timed if not row["code"].startswith(f"{OURS}+")))
+    grids = sorted({row["M"] for row in timed})
+    medians = {(row["code"], row["M"]): row["seconds"]["median"] for row in timed}
+    grids_of: dict[int, set[int]] = {}
+    for row in timed:
+        grids_of.setdefault(row["threads"], set()).add(row["M"])
+    threads = ", ".join(
+        f"{n} at {', '.join(f'{M}²' for M in sorted(found))}" for n, found in sorted(grids_of.items())
+    )
+    figure = curves(
+        "*",
+        f"Seconds over the grid at a recomputed gap of 1e-8, {kind} flat. Threads: {threads}.",
+        "M",
+        {code: NAMES.get(code, code) for code in codes},
+        xlabel="elements per side",
+        ylabel="seconds",
+        height=4.6,
+        log="xy",
+        marker=True,
+    )
+    return figure, {"M": grids, **{code: [medians.get((code, M)) for M in grids] for code in codes}}

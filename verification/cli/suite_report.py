@@ -97,7 +97,7 @@ def likely_faults(results: Iterable[Result], most: int = 4) -> list[str]:
 
 def document(judged: Judged, name: str, stated: Mapping[str, Any]) -> dict[str, Any]:
     """Return the JSON document; ``name`` is the solver's, ``stated`` its abilities."""
-    from verification.solver_suite import suite
+    from verification.solver_suite import failures, suite
 
     return judged.run.document() | {
         "suite": suite.identity(),
@@ -116,6 +116,7 @@ def document(judged: Judged, name: str, stated: Mapping[str, Any]) -> dict[str, 
             "low_order": judged.low_order,
             "unseen_faults": judged.unseen,
             "likely_faults": likely_faults(judged.results),
+            "failures_by_dimension": failures.by_dimension(judged.results),
         },
     }
 
@@ -134,6 +135,8 @@ def text(name: str, judged: Judged) -> str:
 def table(name: str, judged: Judged) -> str:
     """Return the verdicts, reasons of failure, what was not run and why, what no case looked for, and the
     counts."""
+    from verification.solver_suite import failures
+
     done = judged.run
     ran = [r for r in done.results if r.status != "unavailable"]
     units = ["relative" if r.metric == "relative" else r.unit for r in ran]  # a relative error has none else
@@ -154,6 +157,9 @@ def table(name: str, judged: Judged) -> str:
         parts.append("\n".join(["not applicable, and not passed:", *lines]))
     if named := likely_faults(done.results):
         parts.append("faults by the share of their cases that fail:\n" + wrapped(", ".join(named), "  "))
+    if listed := failures.in_words(failures.by_dimension(done.results)):
+        lines = [wrapped(each, "  ") for each in listed]
+        parts.append("\n".join(["failures by dimension of the designs:", *lines]))
     if judged.unseen:
         parts.append("looked for by none of these cases:\n" + wrapped(", ".join(judged.unseen), "  "))
     if judged.left:

@@ -30,10 +30,11 @@ if TYPE_CHECKING:
 FAILED = "FAILED"  # status of rows without numbers
 MOST_FILES = 7  # curves of a picture, one for each file; more are a mean with its scatter
 NAMES = {"friction_coefficient_corrected": "mu", "contact_area": "A"}
-SUFFIXES = {"store": ".sqlite", "csv": ".csv", "json": ".json"}
+SUFFIXES = {"store": ".sqlite", "csv": ".csv", "parquet": ".parquet", "json": ".json"}
 
 EPILOG = """examples:
   rough-friction sweep table3 --store table3.sqlite --workers 4 --csv table3.csv
+  rough-friction sweep study.toml --parquet study.parquet
   rough-friction sweep study.toml --scheduler tcp://127.0.0.1:8786 --csv study.csv
   rough-friction sweep study.toml --plot mu.svg --x load --by lower_rms
 
@@ -64,6 +65,7 @@ OPTIONS: Options = {
     "--workers": option("worker processes (default 2)", metavar="N", type=int, default=2),
     "--scheduler": option("use the workers of this dask.distributed scheduler instead", metavar="ADDRESS"),
     "--csv": option("export the study's rows as CSV ('-': to stdout)", metavar="FILE", type=output_text),
+    "--parquet": option("export the study's rows as Parquet", metavar="FILE", type=output_file),
     "--plot": option("curves as a picture (.png, .svg or .pdf)", metavar="FILE", type=output_file),
     "--x": option("with --plot: the column along x (default: what varies)", metavar="COLUMN"),
     "--y": option(
@@ -80,15 +82,17 @@ OPTIONS: Options = {
 
 def run(options: argparse.Namespace) -> int:
     """Run what is missing and export; status 1 when a run failed, did not converge, or a worker was lost."""
-    from verification.sweep import engine, posable
+    from verification.sweep import engine, export, posable
     from verification.sweep.store import files_of
     from verification.sweep.study_file import read_study
 
     check_workers("--workers", options.workers)
+    if options.parquet is not None:
+        export.require_parquet(options.parquet)
     store = options.store or Path(Path(options.study).stem + ".sqlite")
     study = read_study(options.study, keep_going=options.keep_going)
     check_plot(options, study)
-    written = {name: getattr(options, name) for name in ("csv", "json", "plot")}
+    written = {name: getattr(options, name) for name in ("csv", "parquet", "json", "plot")}
     check_outputs(study.files, store=files_of(store), **written)
     _check_suffixes(store=options.store, **written)
     if options.scheduler is None:  # a cluster's memory is not this machine's
@@ -184,6 +188,8 @@ def _export(options: argparse.Namespace, done: Sweep, store: Path, failed: list[
         table = export.to_csv(rows).rstrip("\n")
     elif options.csv is not None:
         export.write_csv(rows, options.csv)
+    if options.parquet is not None:
+        export.write_parquet(rows, options.parquet)
     if options.plot is not None and done.rows:
         from verification.cli.plot_curves import draw_sweep
         from verification.sweep.curves import curves

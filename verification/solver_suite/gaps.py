@@ -13,9 +13,9 @@ def centres(side: float, M: int) -> tuple[Array, Array]:
     return x[:, None], x[None, :]
 
 
-def waves(M: int, seed: int, *, longest: int = 1, shortest: int) -> Array:
+def waves(M: int, seed: int, *, longest: int = 1, shortest: int, hurst: float = 0.8) -> Array:
     """Return random periodic heights ``(M, M)`` of unit rms: waves 1 ... ``shortest``, flat spectrum up to
-    ``longest``, self-affine beyond (Hurst exponent 0.8); the same surface on every grid, ``M > 2 shortest``.
+    ``longest``, self-affine beyond; the same surface on every grid, ``M > 2 shortest``.
 
     >>> coarse, fine = waves(8, 0, shortest=3), waves(24, 0, shortest=3)
     >>> coarse.shape, round(float(np.sqrt(np.mean(fine**2))), 12)
@@ -24,7 +24,7 @@ def waves(M: int, seed: int, *, longest: int = 1, shortest: int) -> Array:
     random = np.random.default_rng(seed)
     k = np.arange(-shortest, shortest + 1)
     wave = np.hypot(k[:, None], k[None, :])
-    envelope = np.where((wave > 0) & (wave <= shortest), np.maximum(wave, longest) ** -1.8, 0.0)
+    envelope = np.where((wave > 0) & (wave <= shortest), np.maximum(wave, longest) ** (-1 - hurst), 0.0)
     amplitude = envelope * (random.standard_normal(wave.shape) + 1j * random.standard_normal(wave.shape))
     spectrum = np.zeros((M, M), dtype=complex)
     spectrum[k[:, None] % M, k[None, :] % M] = amplitude

@@ -1,4 +1,4 @@
-"""Rows as CSV and as a DataFrame, with units. Numbers are written so that they read back exactly."""
+"""Rows as CSV, Parquet and a DataFrame, with units. Numbers are written so that they read back exactly."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 from refimpl.errors import InputError
 from refimpl.scene.key_texts import FRICTION, MATERIAL, SCENE, SURFACES
 from refimpl.solution.quantities import QUANTITIES
-from verification.output.files import write_text
+from verification.output.files import replacing, write_text
 from verification.sweep.run import Row
 from verification.sweep.store import COLUMNS
 
@@ -72,22 +72,47 @@ def named(row: Row) -> Row:
     return found
 
 
+def _with_own_columns(rows: Sequence[Row]) -> tuple[list[Row], list[str]]:
+    """Return the rows, and names of their columns: after all others, what the study varies by full names."""
+    own = dict.fromkeys(name for row in rows for name in named(row))
+    return [row | named(row) for row in rows], [*EXPORTED, *own]
+
+
 def to_csv(rows: Sequence[Row]) -> str:
     """Return CSV text with a header; floats in their shortest exact form, None as an empty field.
-
-    After all other columns stand those of what the study varies by full names.
 
     >>> to_csv([]).split(",")[:3]
     ['key', 'realisation', 'grid']
     """
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
-    names = (*EXPORTED, *dict.fromkeys(name for row in rows for name in named(row)))
+    rows, names = _with_own_columns(rows)
     writer.writerow(map(header, names))
-    writer.writerows([(row | named(row)).get(name) for name in names] for row in rows)
+    writer.writerows([row.get(name) for name in names] for row in rows)
     return buffer.getvalue()
 
 
 def write_csv(rows: Sequence[Row], path: Path) -> None:
     """Write the CSV in one step."""
     write_text(to_csv(rows), path)
+
+
+def write_parquet(rows: Sequence[Row], path: Path) -> None:
+    """Write a Parquet file in one step; raises InputError where pyarrow is not installed."""
+    require_parquet(path)
+    import pyarrow
+    import pyarrow.parquet
+
+    rows, names = _with_own_columns(rows)
+    table = pyarrow.table({header(name): [row.get(name) for row in rows] for name in names})
+    with replacing(path) as temporary:
+        pyarrow.parquet.write_table(table, temporary)
+
+
+def require_parquet(path: Path) -> None:
+    """Raise InputError at once, before any work, where Parquet is unavailable."""
+    try:
+        import pyarrow.parquet  # noqa: F401  # only whether it is there
+    except ModuleNotFoundError as missing:
+        allowed = "pyarrow installed (pip install '.[parquet]' in a checkout), or --csv instead"
+        raise InputError("--parquet", str(path), allowed) from missing

@@ -101,7 +101,9 @@ COMMANDS = [
     ("sweep table3 --store ''", "--store: expected a file's name"),
     ("sweep table3 --store -", "--store"),
     ("sweep table3 --csv nowhere/t.csv", "--csv"),
-    ("sweep table3 --csv x.sqlite", ".sqlite"),
+    ("sweep table3 --csv x.parquet", ".parquet"),
+    ("sweep table3 --parquet x.csv", ".csv"),
+    ("sweep table3 --parquet -", "--parquet"),
     ("sweep table3 --json x.sqlite", ".sqlite"),
     ("sweep study.toml --plot mu.jpg", ".svg"),
     ("sweep study.toml --plot mu.png --x rms", "--x"),
@@ -258,7 +260,7 @@ IN_PLACE_OF_INPUTS = [
     ("solve scene.vtu --grid 8 --vtk", ["scene.vtu"]),
     *(
         (f"sweep study.toml {option}", ["study.toml", "measured.toml", "heights.npy"])
-        for option in ("--store", "--csv", "--json")
+        for option in ("--store", "--csv", "--parquet", "--json")
     ),
     ("report --results r.json --output out --json", ["r.json"]),
 ]

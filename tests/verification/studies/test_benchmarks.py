@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from verification.benchmarks import rounds
+from verification.benchmarks import overhead, rounds
 from verification.benchmarks.__main__ import main
 from verification.benchmarks.codes import ALONE, OWN, SHEARED, SLOPED, codes
 from verification.benchmarks.problems import problem
@@ -184,6 +184,13 @@ def test_the_solver_alone_is_compared_as_peers_are() -> None:
     assert table["fastest peer, solver alone, again"] == {"code": "peer", "seconds over ours": 2.0}
     all_turns[2].rounds[0]["seconds again"] = None  # too long to be repeated
     assert "fastest peer, solver alone, again" not in ratios(all_turns)
+
+
+def test_a_solve_and_its_solver_take_turns() -> None:
+    seconds, work = overhead.turns(SLOPED, "smooth", 32, 3)
+    assert np.shape(seconds) == (3, 2)
+    assert min(map(min, seconds)) > 0
+    assert work > overhead.turns(OWN, "smooth", 32, 1)[1] > 0
 
 
 @pytest.mark.parametrize("name", [OWN, ALONE, SHEARED, SLOPED])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,7 +19,7 @@ from tests.changed import changed
 from verification.cli import plot_curves
 from verification.sweep import export, run
 from verification.sweep.curves import Point, curves
-from verification.sweep.export import EXPORTED, unit_of
+from verification.sweep.export import EXPORTED, header, unit_of, write_parquet
 from verification.sweep.quality import points_of, quality_of, warnings_of
 from verification.sweep.run import COORDINATES, Row, outcome
 from verification.sweep.store import COLUMNS
@@ -113,6 +114,20 @@ def exported() -> list[Row]:
         | {"key": key, "contact_area": area, "correlation_length": length, "status": "converged"}
         for key, area, length in values
     ]
+
+
+def test_parquet_reads_back_exactly(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from pyarrow import parquet
+
+    write_parquet(exported(), tmp_path / "t.parquet")
+    found = parquet.read_table(tmp_path / "t.parquet").to_pylist()
+    plain = [{name.partition(" [")[0]: value for name, value in row.items()} for row in found]
+    assert plain == [row | {"seconds": None} for row in exported()]
+    assert list(found[0]) == [header(name) for name in plain[0]]
+    for name in ("pyarrow", "pyarrow.parquet"):
+        monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(InputError, match="--csv instead"):
+        export.require_parquet(Path("t.parquet"))
 
 
 def test_a_frame_has_units_and_named_parameters_as_columns() -> None:
