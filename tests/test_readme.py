@@ -9,6 +9,7 @@ from statistics import median
 from typing import Any
 
 from tests.documents import ROOT, blocks, commands, run
+from verification.coverage.class_scenes import GRIDS
 from verification.output.result_files import committed
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -97,7 +98,7 @@ def test_what_is_said_of_other_numbers_is_of_the_study() -> None:
     failing = {row["class"]: row["held"] for row in table if row["class"] and row["number"] == "approach"}
     low = sorted((100 * held, kind) for kind, held in failing.items() if held < 0.9)
     said = [f"{kind} ({share:.0f} %{' cover' * (k == 0)})" for k, (share, kind) in enumerate(low)]
-    assert f"bars fail on {' and '.join(said)}" in PAGE_OF_BARS
+    assert f"bars are too short on {' and '.join(said)}" in PAGE_OF_BARS
     (random,) = (case for case in committed("pulled")["cases"] if case["id"] == "accuracy/pulled-random")
     held = [100 * share for share in random["data"]["held"].values()]
     assert f"{min(held):.0f} to {max(held):.0f} % cover, on 300 scenes" in PAGE_OF_BARS
@@ -122,8 +123,12 @@ def test_the_gain_of_the_correction_is_that_of_the_study() -> None:
     least, most = (pick(row["held"] for row in rows) for pick in (min, max))
     text = " ".join(README.split())
     assert (
-        f"in {100 * total['held']:.0f} % of {total['scenes']} random scenes; "
-        f"by class of scene in {100 * least:.0f} to {100 * most:.0f} %; "
-        f"{100 * total['held_at_worst']:.0f} % at worst, if each reference errs by its own bound"
+        f"in {100 * total['held']:.0f} % of {total['scenes']} random scenes "
+        f"on {min(GRIDS)} to {max(GRIDS)} elements per side; "
+        f"by class of scene in {100 * least:.0f} to {100 * most:.0f} %"
     ) in text
+    judged = f"The bars of {min(GRIDS)} to {max(GRIDS)} elements per side are judged"
+    at_worst = f"if each reference errs by its own bound, {100 * total['held_at_worst']:.0f} % cover"
+    assert judged in page
+    assert at_worst in page
     assert f"{total['median_bar_over_error']:.1f} times the actual error, in the median" in text

@@ -47,7 +47,7 @@ EPILOG = """examples:
   rough-friction solve table1-smooth --accuracy 0.01 --explain
 
 exit status: 0 CONVERGED, or CYCLED: converged, with an alternating contact edge, certified too, and
-error bars include what that leaves open; 1 any other status, and with --strict a number that is not
+error bars include the alternation; 1 any other status, and with --strict a number that is not
 usable (its bar exceeds half of it, that of Q half of the tangential force); 2 bad input;
 130 interrupted, after the table of a refinement's last finished grid
 
@@ -109,7 +109,7 @@ OPTIONS: Options = {
     },
     "--slope-correction": option("exact tractions of oblique facets in Eq. (7)", action="store_true"),
     "--plastic": option(
-        "end pressures at the hardness, or never (default: the scene's own, or where they reach it)",
+        "cap pressures at the hardness, or never (default: the scene's own, or where they reach it)",
         metavar="on|off",
         type=on_or_off,
     ),
