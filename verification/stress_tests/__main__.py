@@ -1,4 +1,4 @@
-"""``python -m verification.stress_tests --json FILE``: run the study (five minutes on one thread)."""
+"""``python -m verification.stress_tests --json FILE``: run the study (four minutes on one thread)."""
 
 from __future__ import annotations
 
