@@ -184,9 +184,7 @@ def test_results_of_few_digits_and_second_solves_are_reported_apart() -> None:
     states = [{"verdict": "right", "oracle": oracle, "digits": digits} for oracle, digits in judges]
     counts = {"wrong": 0, "crash": 0, "detected failure": 0, "unjudged": 5}
     said = sentence({"states": states, "counts": counts})
-    assert (
-        "5 not judged, 4 right, 2 of them to fewer than 6 digits, the least 0.1; 2 of the right" in said
-    )
+    assert "5 not judged, 4 right, 2 of them to fewer than 6 digits, the least 0.1; 2 of the right" in said
 
 
 def test_the_first_page_says_where_the_model_fails() -> None:
