@@ -171,11 +171,12 @@ def studies(documents: Mapping[str, Any]) -> str:
 
 def _searches(documents: Mapping[str, Any]) -> Iterator[Row]:
     """Yield the rows of searches for inputs that are answered wrongly."""
-    found = documents["extremes"]["counts"]
+    found, states = documents["extremes"]["counts"], documents["extremes"]["states"]
+    least = min(row["digits"] for row in states if row["verdict"] == "right")
     yield (
         "extreme inputs",
-        f"{found['right']} right, {found['detected failure']} detected failures, "
-        f"{found['wrong']} wrong, {found['crash']} crashes",
+        f"{found['right']} right (to {least:.1f} digits at least), {found['detected failure']} detected "
+        f"failures, {found['unjudged']} unjudged, {found['wrong']} wrong, {found['crash']} crashes",
         link("extremes"),
     )
     invariants = documents["hypothesis"]

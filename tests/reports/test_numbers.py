@@ -195,7 +195,10 @@ COVERED = [
 ]
 STUDIES: dict[str, Any] = {
     "coverage_corrected": {"table": COVERED},
-    "extremes": {"counts": {"right": 0, "wrong": 1, "crash": 2, "detected failure": 3}, "states": []},
+    "extremes": {
+        "counts": {"right": 0, "wrong": 1, "crash": 2, "detected failure": 3, "unjudged": 4},
+        "states": [],
+    },
 }
 
 
