@@ -48,8 +48,7 @@ SMALL_SLOPE = 0.01  # degrees
 
 
 def _missing_load(sign: int) -> float:
-    """Return the relative difference of the force across the arc r = 7 a from the load 2 a cos(gamma), by
-    (A4)-(A6)."""
+    """Return the relative difference of the force across the arc r = 7 a from 2 a cos(gamma)."""
     alpha = np.pi / 2 - GAMMA
     nodes, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
     force = 0.0
@@ -71,8 +70,7 @@ def _kernel_left(literal: bool) -> float:
 
 
 def _flat_residual(theta: Theta) -> float:
-    """Return the largest net pseudo traction on a flat boundary, where none is needed, in units of the
-    pressure."""
+    """Return the largest net pseudo traction on a flat boundary, over the pressure: none is needed."""
     flat = Sinusoid(0.0, 100.0, 0.0)
     x = np.array([-2.0, -0.9, -0.5, 0.0, 0.5, 0.9, 2.0])
     along, down = pseudo_tractions(x, flat, theta)
@@ -81,15 +79,13 @@ def _flat_residual(theta: Theta) -> float:
 
 
 def _load_left() -> float:
-    """Return the pseudo traction under a flat strip's centre by (A3): it must vanish, there is nothing to
-    compensate."""
+    """Return the pseudo traction under a flat strip's centre by (A3), which must vanish."""
     along, down = pseudo_tractions(0.0, Sinusoid(0.0, 100.0, 0.0), Theta.NORMAL)
     return float(np.hypot(along, down))
 
 
 def _strain_left(added: float) -> float:
-    """Return the relative error of the first-order change at x = a/2 on a crest; ``added`` = 1 includes the
-    strain."""
+    """Return the first-order change's relative error at x = a/2 on a crest; ``added`` = 1: strain."""
     nu, x = 0.3, 0.5
     profile = Sinusoid(SMALL_SLOPE, 20.0, 0.0)
     wavy, flat = printed(SMALL_SLOPE, 20.0, nu, offsets=[x])

@@ -34,8 +34,7 @@ def neighbours(reach: int) -> list[tuple[int, int]]:
 
 
 def facet_coefficient(tan_x: Array, tan_y: Array, nu: float, offset: tuple[int, int]) -> Array:
-    """Return the downward displacement (n,) at the centre of the element `offset` away, E = 1, unit
-    pressure, a = 1.
+    """Return the downward displacement (n,) at the element `offset` away, E = 1, unit pressure, a = 1.
 
     tan_x, tan_y: gradients (n,) of the loaded element's plane, heights outwards from the body; its
     projection is a square of edge 2 a. For another edge and modulus multiply by a / E.
@@ -57,8 +56,7 @@ def facet_coefficient(tan_x: Array, tan_y: Array, nu: float, offset: tuple[int, 
 
 
 def _own(tan_x: Array, tan_y: Array, nu: float) -> Array:
-    """Return the value at the loaded element's own centre: the odd part cancels; 1/rho in polar
-    coordinates."""
+    """Return the value at the loaded element's centre, by 1/rho in polar coordinates."""
     nodes, weights = np.polynomial.legendre.leggauss(NEAR)
     width = 2 * pi / OCTANTS
     angles = (width * (np.arange(OCTANTS)[:, None] + 0.5 * (nodes + 1))).ravel()

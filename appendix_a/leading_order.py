@@ -57,8 +57,7 @@ def facet_prediction(
 
 
 def plane_slope(offsets: Array, nu: float, slope_deg: float) -> Array:
-    """Return the exact u(x) - u(0) (m,) on an infinite plane at `slope_deg`: the flat solution in the
-    plane's own frame.
+    """Return the exact u(x) - u(0) (m,) on a plane at `slope_deg`: the flat solution in its frame.
 
     Along the slope the offset is x / cos; vertical is cos times the normal plus sin times the downhill part.
     """
@@ -69,8 +68,7 @@ def plane_slope(offsets: Array, nu: float, slope_deg: float) -> Array:
 
 
 def slope_of_error(offset: float, nu: float, error: float = 0.02) -> float:
-    """Return the slope (degrees) where the first-order error is the fraction `error` of the flat coefficient
-    there.
+    """Return the slope (degrees) whose first-order error is `error` of the flat coefficient.
 
     >>> round(slope_of_error(2.0, 0.3), 1)  # the next element
     4.2

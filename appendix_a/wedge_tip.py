@@ -51,9 +51,7 @@ def relative_difference(
 
 
 def tip_displacement(x: ArrayLike, gamma: float, nu: float, *, half_base: float, datum: float) -> Real:
-    """Return displacements of the surface at x into the body, relative to x = datum, in p a / E (plane
-    strain).
-    """
+    """Return displacements at x into the body, relative to x = datum, in p a / E (plane strain)."""
     if not 0 <= real(gamma) < np.pi / 2:
         raise InputError("gamma", gamma, "a slope angle in [0, pi/2) rad")
     if not real(half_base) > 1:
@@ -67,9 +65,7 @@ def tip_displacement(x: ArrayLike, gamma: float, nu: float, *, half_base: float,
 
 
 def base_tractions(x: ArrayLike, gamma: float, half_base: float) -> tuple[Real, Real]:
-    """Return the tractions (along x, into the half-space) of the infinite wedge on the base at x, per unit
-    pressure.
-    """
+    """Return the infinite wedge's tractions (along x, into the half-space) on the base at x."""
     x = np.asarray(x, dtype=float)
     depth = half_base * np.tan(gamma)
     theta = np.arctan2(x, depth)
@@ -81,8 +77,7 @@ def base_tractions(x: ArrayLike, gamma: float, half_base: float) -> tuple[Real, 
 
 
 def _local(x: Real, gamma: float, nu: float, half_base: float) -> Real:
-    """Return the infinite wedge's displacement of the face at x >= 0 less that of the base below it; 0 beyond
-    it."""
+    """Return the wedge's face displacement at x >= 0 less that of the base below it."""
     x = np.clip(x, APEX, half_base)
     depth, face = half_base * np.tan(gamma), np.pi / 2 - gamma
     on_face, _ = wedge.displacements(x / np.cos(gamma), np.full_like(x, face), gamma, nu)
@@ -92,8 +87,7 @@ def _local(x: Real, gamma: float, nu: float, half_base: float) -> Real:
 
 
 def _half_space(x: float, gamma: float, nu: float, half_base: float) -> float:
-    """Return the displacement of the half-space at x >= 0 under the base tractions, up to the datum's
-    constant.
+    """Return the half-space's displacement at x >= 0 under the base tractions, up to a datum.
 
     The pressure is even and the shear odd in s, so both sums run over 0 < s < half_base.
     """

@@ -92,11 +92,8 @@ def require_number(
     at_least: float | None = None,
     below: float | None = None,
     at_most: float | None = None,
-) -> None:
-    """Raise `InputError` unless ``value`` is a finite real number within the bounds.
-
-    >>> require_number("nu", 0.3, "a ratio", above=-1, at_most=0.5)
-    """
+) -> float:
+    """Return ``value`` as a double; raise `InputError` unless it is finite, real and within the bounds."""
     if not isinstance(value, bool) and isinstance(value, numbers.Real):
         number = as_double(value)
         if (
@@ -106,7 +103,7 @@ def require_number(
             and (below is None or number < below)
             and (at_most is None or number <= at_most)
         ):
-            return
+            return number
     raise InputError(field, value, allowed)
 
 
@@ -116,25 +113,22 @@ def is_whole(value: object) -> bool:
 
 
 def keep_doubles(parameters: object, *names: str) -> None:
-    """Store the numbers of a frozen dataclass as doubles: arithmetic is as good as the least of its operands.
-
-    Whole numbers, fractions, NumPy's of any width: what `require_number` has let pass. None stays.
-    """
+    """Store what `require_number` let pass of a frozen dataclass as doubles; None stays."""
     for name in names:
         value = getattr(parameters, name)
         if value is not None:
             object.__setattr__(parameters, name, float(value))
 
 
-def require_size(field: str, value: object, allowed: str) -> None:
-    """Raise `InputError` unless ``value`` is a positive size in SI units that arithmetic can bear.
+def require_size(field: str, value: object, allowed: str) -> float:
+    """Return ``value`` as a double; raise `InputError` unless it is a positive size that arithmetic can bear.
 
     >>> require_size("side", 1e-200, "a positive length in m")
     Traceback (most recent call last):
     ...
     refimpl.errors.InputError: side = 1e-200: expected a positive length in m, 1e-30 to 1e+30
     """
-    require_number(field, value, f"{allowed}, {LEAST} to {MOST}", at_least=LEAST, at_most=MOST)
+    return require_number(field, value, f"{allowed}, {LEAST} to {MOST}", at_least=LEAST, at_most=MOST)
 
 
 def require_one_of(field: str, value: object, allowed: Iterable[str]) -> None:
@@ -150,11 +144,13 @@ def require_one_of(field: str, value: object, allowed: Iterable[str]) -> None:
         raise InputError(field, value, f"one of {', '.join(known)}")
 
 
-def require_regular(field: str, path: Path, most: int) -> None:
-    """Raise `InputError` for a device or a pipe, which may have no end, and for a file of more bytes.
+def unreadable(path: Path, allowed: str) -> InputError:
+    """Return the refusal of a file of heights."""
+    return InputError("path", str(path), allowed)
 
-    What does not exist, and folders, are for the system to refuse.
-    """
+
+def require_regular(field: str, path: Path, most: int) -> None:
+    """Raise `InputError` for a device or a pipe, which may have no end, and for a file of more bytes."""
     found = os.path.exists(path) and not os.path.isdir(path)  # no error for long names
     if found and not (os.path.isfile(path) and os.path.getsize(path) <= most):
         raise InputError(field, str(path), f"a regular file of at most {most} bytes")

@@ -53,8 +53,7 @@ def free_memory() -> int:
 
 
 def _left_in_groups() -> Iterator[int]:
-    """Yield the bytes that the limit of each group above this process leaves; droppable file pages count as
-    free."""
+    """Yield the bytes that each control group leaves; droppable file pages count as free."""
     for folder in _groups():
         for limit, usage in _USAGE.items():
             with suppress(OSError, ValueError):  # "max" is no limit
@@ -63,8 +62,7 @@ def _left_in_groups() -> Iterator[int]:
 
 
 def _groups() -> Iterator[Path]:
-    """Yield the folders of this process's memory group and of those above it; in a container, its own
-    root."""
+    """Yield the folders of this process's memory group and those above it."""
     with suppress(OSError, ValueError):
         for line in _text(PROC / "self/cgroup").splitlines():
             _, controllers, place = line.split(":", 2)
@@ -88,8 +86,7 @@ def _text(path: Path) -> str:
 
 
 def _left_of_limits() -> Iterator[int]:
-    """Yield the bytes that the limits of the address space and of the data segment leave, where psutil has
-    them."""
+    """Yield the bytes that limits of address space and data segment leave, where psutil has them."""
     process = psutil.Process()
     if hasattr(process, "rlimit"):
         used = process.memory_info()
@@ -158,10 +155,7 @@ def limit_process(seconds: float, memory: int) -> None:
 
 @contextmanager
 def interrupts_blocked() -> Iterator[None]:
-    """Keep interrupts from processes started in the block: one sent to the whole group is for this process.
-
-    On Windows a console sends them to all.
-    """
+    """Keep interrupts to the group from processes started in the block; Windows sends them to all."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -192,10 +186,7 @@ def kill_group(leader: int) -> None:
 
 
 def has_ended(child: int) -> bool:
-    """Return whether a child has ended. It is not reaped, so that its number stays its own.
-
-    Python has no such call on Windows, where an open handle keeps the number, and in old ones on macOS.
-    """
+    """Return whether a child has ended, not reaping it; by its status where there is no such call."""
     if hasattr(os, "waitid"):
         with suppress(ChildProcessError):  # reaped before
             return os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None

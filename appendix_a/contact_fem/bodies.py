@@ -110,9 +110,7 @@ def _unit_surface(
 
 
 def wave_height(x: Array, amplitude: float, harmonics: Harmonics = ()) -> Array:
-    """Return the height above the mean plane, out of the body, at distances x from the crest
-    (wavelengths).
-    """
+    """Return the height above the mean plane, out of the body, at x from the crest (wavelengths)."""
     waves = np.cos(WAVENUMBER * x)
     for order, share, phase in harmonics:
         waves = waves + share * np.cos(order * WAVENUMBER * x + phase)

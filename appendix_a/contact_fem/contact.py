@@ -127,8 +127,7 @@ def _tau_forces(interface: Interface, state: _State, tau: float) -> tuple[Array,
 
 
 def _updated(interface: Interface, state: _State, load: float, friction: Friction, hold: float) -> _State:
-    """Return the pressures, displacements and approach for the geometry that `state` left; `hold` in shortest
-    edges."""
+    """Return pressures, displacements and approach for `state`'s geometry; `hold` in shortest edges."""
     sampled = interface.at(interface.whole())
     hats = sampled.hats.toarray()
     on_lower, on_upper = sampled.forces(hats, friction.beta * hats)
@@ -159,8 +158,7 @@ def _updated(interface: Interface, state: _State, load: float, friction: Frictio
 def _settled(
     ends: tuple[float, float], before: tuple[float, float] | None, slack: float
 ) -> tuple[float, float]:
-    """Return the ends between which tau acts: as before if they moved by less than `slack`, which stops
-    cycles."""
+    """Return the ends between which tau acts: as before if moved by less than `slack`, against cycles."""
     if before is None or max(abs(a - b) for a, b in zip(ends, before, strict=True)) > slack:
         return ends
     return before
@@ -213,8 +211,7 @@ def _gathered(interface: Interface, state: _State, friction: Friction, updates: 
 
 
 def _undeformed(surface: Surface, deformed: Array, ends: tuple[float, float]) -> tuple[float, float]:
-    """Return the undeformed abscissae of the surface points that deformation has taken to the abscissae
-    `ends`."""
+    """Return the undeformed abscissae of the points that deformation has taken to `ends`."""
     edge, t = locate(deformed[0][surface.edges], np.array(ends))
     shape, _ = lagrange(2, t)
     left, right = np.sum(shape * surface.at[0][surface.edges[:, edge]], axis=0)

@@ -22,8 +22,7 @@ REACH = 2.0  # the end is within so many edges of the last loaded node
 def contact_ends(
     x: Array, pressure: Array, slip: float = 0.0, nodes_per_degree: int = WIGGLY
 ) -> tuple[float, float]:
-    """Return the abscissae of both ends, for pressures >= 0 at nodes x (n,) of one contact; `slip` =
-    coupling * beta.
+    """Return both ends (abscissae) for pressures >= 0 at nodes x (n,); `slip` = coupling * beta.
 
     Smooth pressures do with 2 `nodes_per_degree` of the fit.
 
@@ -38,8 +37,7 @@ def contact_ends(
 
 
 def _end(x: Array, power: Array, nodes_per_degree: int) -> float:
-    """Return the zero of `power`, which falls from its peak to the right; the last loaded node if there are
-    few."""
+    """Return the zero to the right of `power`'s peak; the last loaded node if there are few."""
     share = power / power[0]
     fitted = (share > LOW) & (share < HIGH)
     last = int(np.flatnonzero(share > 0)[-1])

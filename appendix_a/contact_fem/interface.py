@@ -23,8 +23,7 @@ GAUSS = 6  # points on an edge: the other body's nodes, kinks of the integrands,
 
 
 def locate(x: Array, at: Array) -> tuple[Numbers, Array]:
-    """Return the edge and parameter t on it, for edges of node abscissae x (3, m) from left to right, at
-    points (q,).
+    """Return edge and parameter t on it, for edges of node abscissae x (3, m), at points (q,).
 
     Quadratic sides, x(t) = x0 + (x2 - x0) t + bow t (1 - t), by the root that does not cancel; points beyond
     the first or last edge are taken for its end (contact never comes near the zone's ends).
@@ -129,8 +128,7 @@ class Sampled:
     slope: Array
 
     def forces(self, pressure: Array | csr_matrix, traction: Array | csr_matrix) -> tuple[Array, Array]:
-        """Return the nodal forces on the lower body and what the upper one feels, stacked (F_x; F_z), (2n,
-        k).
+        """Return the nodal forces on the lower body and the upper one, stacked (F_x; F_z), (2n, k).
 
         `pressure`, `traction`: (q, k) values per unit deformed length, along the inward normal of the lower
         body and along the surface towards +x: (f dz + r dx, -f dx + r dz).

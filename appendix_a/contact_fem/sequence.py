@@ -44,9 +44,7 @@ class Estimate:
 
 
 def plans(pair: WavyPair, load: float, level: int = 0, depth: float = 1.5) -> tuple[MeshPlan, MeshPlan]:
-    """Return the meshes of the lower and the upper body before the ends are known: Westergaard's
-    half-length.
-    """
+    """Return both bodies' meshes before the ends are known: Westergaard's half-length."""
     share = min(load / pair.full_contact_pressure, 0.6)
     half = math.asin(math.sqrt(share)) / math.pi
     cells = 2 ** math.ceil(math.log2(BASE_CELLS / (2.0 * half)))

@@ -52,9 +52,7 @@ class Patch:
 
 
 def nodes_along(elements: int) -> tuple[Array, Array, Array]:
-    """Return element ends along x, y and depth; `elements` of them from 0 to ZONE, the others in
-    proportion.
-    """
+    """Return element ends along x, y and depth; `elements` from 0 to ZONE, others in proportion."""
     even = np.linspace(0.0, ZONE, elements + 1)
     wide = 0.5 - ZONE
     steps = np.linspace(0.0, 1.0, max(2, round(2 * elements / 3)) + 1)[1:]

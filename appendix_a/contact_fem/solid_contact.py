@@ -50,9 +50,7 @@ class _Sampled:
     slope: Array
 
     def traction(self, beta: float) -> Array:
-        """Return (3, q) force on the lower body by unit pressure: against the normal, and beta along the
-        tangent.
-        """
+        """Return (3, q) force on the lower body by unit pressure: normal, and beta along the tangent."""
         tangent = np.array([self.area[2], np.zeros_like(self.gap), -self.area[0]])
         tangent /= np.hypot(self.area[2], self.area[0])
         force: Array = -self.area + beta * np.linalg.norm(self.area, axis=0) * tangent
@@ -60,8 +58,7 @@ class _Sampled:
 
 
 def _matrix(grid: tuple[int, int], place: Array, orders: tuple[int, int]) -> csr_matrix:
-    """Return (q, n) biquadratic interpolation at places (2, q) in element spacings; `orders`: 1 for
-    d/dplace."""
+    """Return (q, n) biquadratic interpolation at places (2, q), in elements; `orders`: 1 for d/dplace."""
     count = [(n - 1) // 2 for n in grid]
     element = [np.clip(np.floor(p).astype(int), 0, m - 1) for p, m in zip(place, count, strict=True)]
     one, two = (lagrange(2, p - e)[o] for p, e, o in zip(place, element, orders, strict=True))
@@ -99,8 +96,7 @@ def _gauss(grid: tuple[int, int]) -> tuple[Array, Array]:
 
 
 def _located(upper: Array, at: Array, start: Array) -> Array:
-    """Return the places on the upper grid (3, nx, ny) whose x, y are `at` (2, q), by Newton's method from
-    `start`."""
+    """Return places on the upper grid (3, nx, ny) with x, y `at` (2, q), by Newton's method."""
     grid, place = upper.shape[1:], start.copy()
     flat = upper[:2].reshape(2, -1)
     limit = [[1e-9], [1e-9]], [[(n - 1) / 2 - 1e-9] for n in grid]
@@ -138,8 +134,7 @@ def _sample(lower: Array, upper: Array) -> _Sampled:
 
 
 def press(lower: Patch, upper: Patch, distance: float, load: float, beta: float) -> SolidContact:
-    """Solve as the upper body slides along +x under `load` per square wavelength; planes `distance` apart at
-    touch.
+    """Solve as the upper body slides along +x under `load` per square wavelength, `distance` apart at touch.
 
     Raises NotConverged.
     """

@@ -30,8 +30,7 @@ OUTER = 64.0  # outer radius over the asperity's base; a quarter of it is the sm
 
 
 def circular_patch(r: Array, nu: float) -> Array:
-    """Return the exact u_z (m,) on a half-space under unit pressure on r < 1 (Johnson 1985, Eqs 3.29), in p
-    a / E.
+    """Return the exact u_z (m,) under unit pressure on r < 1 (Johnson 1985, Eqs 3.29), in p a / E.
 
     >>> float(circular_patch(np.array([0.0]), 0.5)[0])  # 2 (1 - nu^2)
     1.5
@@ -68,9 +67,7 @@ class Axisymmetric(Body):
         return self.pressed(lambda r: r)
 
     def stiffness(self, nu: float) -> csc_matrix:
-        """Return lambda div u div v + 2 mu eps(u) : eps(v), div u = u_r,r + u_r / r + u_z,z; unknowns (u_r;
-        u_z).
-        """
+        """Return lambda div u div v + 2 mu eps(u) : eps(v) in (r, z); unknowns (u_r; u_z)."""
         lam, mu = lame(nu)
         m = {name: form.assemble(self.basis).tocsc() for name, form in FORMS.items()}
         radial = (lam + 2 * mu) * (m["rr"] + m["00"]) + lam * m["0r"] + mu * m["zz"]
@@ -95,8 +92,7 @@ class Axisymmetric(Body):
 def asperity(
     shape: Literal["cone", "paraboloid"], slope_deg: float, half_base: float, nu: float, *, offsets: ArrayLike
 ) -> WavyResult:
-    """Return the axial surface displacements (positive into the body) of an asperity on a half-space, patch
-    at its tip.
+    """Return an asperity's axial surface displacements (into the body), patch at its tip.
 
     slope_deg: the cone's slope, or the paraboloid's at its rim; 0 to 45 degrees.
     half_base: radius of the base, a power of two >= 4.

@@ -37,9 +37,7 @@ class Body:
 
     @classmethod
     def on(cls, reference: MeshTri, bent: MeshTri2, order: int) -> Self:
-        """Distinguish facets on the reference mesh: surface eta = 0, strip |xi| < 1, axis xi = 0,
-        outer.
-        """
+        """Distinguish facets on the reference mesh: surface eta = 0, strip |xi| < 1, axis xi = 0, outer."""
         facets = reference.boundary_facets()
         xi, eta = reference.p[:, reference.facets[:, facets]].mean(axis=1)
         on_surface, on_axis = eta == 0.0, xi == 0.0
@@ -53,8 +51,7 @@ class Body:
         return Basis(self.mesh, ELEMENTS[self.order](), intorder=2 * self.order)
 
     def pressed(self, weight: Callable[[Array], Array] = np.ones_like) -> Array:
-        """Return consistent nodal forces (2, n) of unit pressure on the strip, times `weight` of the
-        abscissae.
+        """Return nodal forces (2, n) of unit pressure on the strip, times `weight` of the abscissae.
 
         Pressure acts against the outward normal; exact on the mesh's quadratic sides.
         """
@@ -69,9 +66,7 @@ class Body:
         return np.array([form.assemble(sides) for form in forms])
 
     def edge_nodes(self, facets: Numbers) -> Numbers:
-        """Return (order + 1, m) nodes of surface facets, from left to right, equally spaced in the
-        parameter.
-        """
+        """Return (order + 1, m) nodes of surface facets, left to right, equally spaced."""
         dofs = self.basis.dofs
         nodes = np.vstack([dofs.nodal_dofs[0][self.mesh.facets[:, facets]], dofs.facet_dofs[:, facets]])
         return np.take_along_axis(nodes, np.argsort(self.basis.doflocs[0][nodes], axis=0), axis=0)
@@ -104,8 +99,7 @@ class Body:
 
 
 def lagrange(order: int, t: Array) -> tuple[Array, Array]:
-    """Return Lagrange polynomials on equally spaced nodes of [0, 1] and their derivatives, (order + 1,
-    len(t)).
+    """Return Lagrange polynomials on equal steps of [0, 1], and derivatives, (order + 1, len(t)).
 
     >>> [values.round(12).tolist() for values in lagrange(1, np.array([0.25]))]
     [[[0.75], [0.25]], [[-1.0], [1.0]]]
@@ -120,9 +114,7 @@ def lagrange(order: int, t: Array) -> tuple[Array, Array]:
 def solve_fixed(
     matrix: csc_matrix, load: Array, fixed: Numbers, values: Array, *, definite: bool = True
 ) -> Array:
-    """Return the solution of matrix u = load with u[fixed] = values; a `definite` matrix needs no
-    pivoting.
-    """
+    """Solve matrix u = load with u[fixed] = values; a `definite` matrix needs no pivoting."""
     start = np.zeros(matrix.shape[0])
     start[fixed] = values
     inner, right, u, free = condense(matrix, load, x=start, D=fixed)

@@ -74,8 +74,7 @@ class CoefficientMap:
         return rest - coupling(nu) * climb
 
     def _rest(self, part: Array, where: tuple[float, float], position: float) -> Array:
-        """Return values of the splines over slope and wavenumber, then of the trigonometric polynomial
-        through the positions (m,).
+        """Return splines over slope and wavenumber, then the trigonometric polynomial in position (m,).
 
         An offset x sees the waves at the phase 2 pi x / wavelength: over 1 / wavelength all repeat evenly.
         """
@@ -105,8 +104,7 @@ class CoefficientMap:
         lower: tuple[float, float],
         upper: tuple[float, float],
     ) -> Array:
-        """Return `percent` for two bodies (E, nu) meeting on one wavy surface; `position` as the lower sees
-        it.
+        """Return `percent` for two bodies (E, nu) on one wave; `position` as the lower sees it.
 
         What is a crest to one is a valley to the other: half a wavelength apart.  The first-order parts
         enter as lower minus upper, and cancel for equal materials.

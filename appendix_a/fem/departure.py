@@ -94,8 +94,7 @@ class Departures:
 
 
 def departure(setup: Setup, level: int, boundary: Boundary, offsets: Array) -> Departure:
-    """Return rough minus flat displacement at horizontal `offsets` (m,), each relative to its value at the
-    centre.
+    """Return rough minus flat displacement at `offsets` (m,), each relative to its centre's.
 
     What is interpolated along the boundary is smooth: the two solves' difference at equal reference
     points, with the exact flat solution's share of their shift in x put right.

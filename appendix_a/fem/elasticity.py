@@ -68,8 +68,7 @@ class PlaneStrain(Body):
         return bmat(blocks, format="csc")
 
     def far_field(self, nu: float) -> tuple[Numbers, Array]:
-        """Return the unknowns on the outer boundary, and their values under the load's resultant on a
-        half-plane.
+        """Return unknowns on the outer boundary, with values under the resultant on a half-plane.
 
         Flamant's point force carries the load's horizontal and vertical resultant and stands where
         its moment is the load's.

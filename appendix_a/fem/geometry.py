@@ -32,9 +32,7 @@ class Boundary:
 
 
 def strip_end(slope: Callable[[Array], Array], direction: int) -> float:
-    """Return the abscissa at arc length 1 from x = 0, on the side of `direction`, on a profile with dy/dx =
-    slope(x).
-    """
+    """Return the abscissa at arc length 1 from x = 0 along `direction`, for dy/dx = slope(x)."""
     nodes, weights = np.polynomial.legendre.leggauss(40)  # to rounding: the profile is smooth over 1
 
     def excess(x: float) -> float:
@@ -49,8 +47,7 @@ def flat() -> Boundary:
 
 
 def sinusoid_boundary(slope_deg: float, wavelength: float, position: float, reach: float) -> Boundary:
-    """Return the profile (A2), y = 2 h_a sin^2(pi x / lambda), about x = position * lambda, taken to |x| =
-    reach.
+    """Return the profile (A2), y = 2 h_a sin^2(pi x / lambda), about position * lambda, to `reach`.
 
     The slope's maximum is 2 pi h_a / lambda = tan(slope_deg).  Between reach / 2 and reach the waves fade
     to their mean level: beyond, the boundary is flat and the far field of a half-plane is exact to the
@@ -80,9 +77,7 @@ def ridge_boundary(slope_deg: float, half_base: float) -> Boundary:
 
 
 def cap_boundary(slope_deg: float, half_base: float) -> Boundary:
-    """Return a parabolic cap of slope `slope_deg` at its rim |x| = half_base, on a flat body; its top at x =
-    0.
-    """
+    """Return a parabolic cap, of `slope_deg` at its rim |x| = half_base, on a flat body."""
     curvature = math.tan(math.radians(slope_deg)) / half_base
 
     def height(x: Array) -> Array:
@@ -99,9 +94,7 @@ def _smooth_step(t: Array) -> Array:
 
 
 def bend(mesh: MeshTri, boundary: Boundary) -> MeshTri2:
-    """Return the reference mesh on the boundary's body, with quadratic sides whose nodes lie on the
-    profile.
-    """
+    """Return the reference mesh on the boundary's body: quadratic sides, nodes on the profile."""
     curved = MeshTri2.from_mesh(mesh)
     xi, eta = curved.doflocs
     # linear between vertices of the mesh: +-1 to the strip's ends, beyond +-4 nothing moves

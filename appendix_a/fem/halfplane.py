@@ -31,8 +31,7 @@ def point_force(x: Array, y: Array, force: tuple[float, float], nu: float) -> tu
 
 
 def pressed_strip(x: Array, nu: float, half_width: float = 1.0) -> Array:
-    """Return u_y(x) - u_y(0) of the surface under unit pressure on |x| < half_width, in units of pressure /
-    E.
+    """Return u_y(x) - u_y(0) under unit pressure on |x| < half_width, in pressure / E.
 
     >>> pressed_strip(np.array([2.0]), 0.0), -6 * np.log(3.0) / np.pi
     (array([-2.09819...]), np.float64(-2.09819...))
@@ -41,7 +40,5 @@ def pressed_strip(x: Array, nu: float, half_width: float = 1.0) -> Array:
 
 
 def sheared_strip(x: Array, nu: float, half_width: float = 1.0) -> Array:
-    """Return u_y(x) - u_y(0) of the surface under unit traction along +x on |x| < half_width, in traction /
-    E.
-    """
+    """Return u_y(x) - u_y(0) under unit traction along +x on |x| < half_width, in traction / E."""
     return (1.0 + nu) * (1.0 - 2.0 * nu) * np.clip(x, -half_width, half_width)

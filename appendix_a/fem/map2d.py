@@ -55,8 +55,7 @@ def compute(
 
 @contextmanager
 def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """Start worker processes that end with the block: after an error or an interrupt at once, whatever they
-    do.
+    """Start worker processes that end with the block, after an error or an interrupt at once.
 
     They ignore an interrupt themselves, which a terminal sends to all: it is this process that ends them.
     """

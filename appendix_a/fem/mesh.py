@@ -67,8 +67,7 @@ def _split(cells: Cells) -> Cells:
 
 
 def _key(column: NDArray[np.int64], row: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return one integer per lattice point; both coordinates stay below 2^30 by `graded_mesh`'s range of
-    sizes."""
+    """Return one integer per lattice point; coordinates stay below 2^30 in `graded_mesh`."""
     return (column << 31) + row
 
 
@@ -95,8 +94,7 @@ def _balanced(leaves: Cells) -> Cells:
 
 
 def _triangulated(leaves: Cells, centred: bool) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return the fan of triangles in each leaf about an apex; an edge with a hanging vertex counts as two
-    edges.
+    """Return each leaf's fan about an apex; an edge with a hanging vertex counts as two.
 
     The apex is the leaf's centre.  Not `centred`, it is the hanging vertex where there is just one, and
     a lower corner, on the side of x = 0, where there is none: about half as many triangles.

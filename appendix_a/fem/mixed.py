@@ -31,9 +31,7 @@ def _mass(p, q, w):  # type: ignore[no-untyped-def]  # as above
 
 
 def displacements(body: PlaneStrain, nu: float) -> Array:
-    """Return (2, n) displacements, 0 < nu <= 0.5: 2 mu eps(u) : eps(v) - p div v; q div u + p q / lambda =
-    0.
-    """
+    """Solve 2 mu eps(u) : eps(v) - p div v; q div u + p q / lambda = 0 for (2, n), 0 < nu <= 0.5."""
     basis = body.basis
     pressure = Basis(body.mesh, PRESSURE_ELEMENTS[body.order](), quadrature=basis.quadrature)
     mu = 0.5 / (1.0 + nu)

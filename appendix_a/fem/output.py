@@ -18,8 +18,7 @@ SIX_NODES = np.array([[0.0, 1.0, 0.0, 0.5, 0.5, 0.0], [0.0, 0.0, 1.0, 0.0, 0.5, 
 
 
 def write_fields(path: Path, body: PlaneStrain, nu: float, u: Array) -> None:
-    """Write the mesh, nodal displacements and element stresses of a solved body, in the format of the
-    path's suffix.
+    """Write mesh, nodal displacements and element stresses in the format of the path's suffix.
 
     path: e.g. *.vtu.  u: (2, n) nodal displacements in units of p a / E, lengths in a, stresses in p.
     """

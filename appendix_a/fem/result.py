@@ -48,8 +48,7 @@ class WavyResult:
 
 
 def _grid_convergence_index(meshes: Sequence[Array]) -> Array:
-    """Return 1.25 |change| q / (1 - q) of the last of three meshes, q the observed ratio of successive
-    changes.
+    """Return 1.25 |change| q / (1 - q) of the last of three meshes, q the ratio of changes.
 
     q is kept within [1/4, 1/2], the ratios of fourth and second order for meshes of twice the unknowns each.
     At each offset the change is the last one or half of the one before, whichever is larger: two successive

@@ -32,8 +32,7 @@ def sinusoid(
     offsets: ArrayLike,
     progress: Callable[[], None] | None = None,
 ) -> WavyResult:
-    """Return the surface displacements of profile (A2) under a uniform pressure p along the local normal,
-    plane strain.
+    """Return displacements of profile (A2) under uniform p along the local normal, plane strain.
 
     slope_deg: maximum slope of y = 2 h_a sin^2(pi x / lambda), y into the body, so that its tangent is
         2 pi h_a / lambda; 0 to 45 degrees.
@@ -82,9 +81,7 @@ def departures(
 
 
 def setup_for(wavelength: float, reach: float) -> Setup:
-    """Return the mesh parameters: grading to the strip's ends, cells of lambda / 8 near it and lambda / 4
-    far.
-    """
+    """Return mesh parameters: graded to the strip's ends, lambda / 8 near it and lambda / 4 far."""
     ends = [Source(end, end, END_SIZE, 1.0) for end in (-1.0, 1.0)]
     near = min(reach, 1.5 * wavelength)
     waves = [Source(-near, near, wavelength / 8, 1.0), Source(-reach, reach, wavelength / 4, 1.0)]

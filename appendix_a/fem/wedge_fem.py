@@ -15,17 +15,14 @@ OUTER = 128.0  # outer radius over half base; a quarter of it is the smallest of
 
 
 def setup_for(half_base: float, radius: float) -> Setup:
-    """Return the mesh parameters: graded to the strip's ends, the tip and the feet of the wedge, where
-    stresses peak.
-    """
+    """Return mesh parameters: graded to the strip's ends, the tip and the feet of the wedge."""
     foot = half_base / 64
     fine = ((-half_base, foot), (-1.0, 2.0**-7), (0.0, 2.0**-5), (1.0, 2.0**-7), (half_base, foot))
     return Setup(tuple(Source(x, x, size, 1.0) for x, size in fine), radius)
 
 
 def wedge_tip(slope_deg: float, half_base: float, nu: float, *, offsets: ArrayLike) -> WavyResult:
-    """Return the surface displacements of a wedge tip under unit pressure on 0 < r < a of both faces, plane
-    strain.
+    """Return a wedge tip's displacements, unit pressure on 0 < r < a of both faces, plane strain.
 
     slope_deg: slope of the faces, 0 to 45 degrees.
     half_base: half the wedge's base over a, a power of two >= 4.

@@ -100,9 +100,7 @@ class Coefficients3D:
 
 
 def corrected(result: Coefficients3D, surface: Waviness, nu: float) -> Coefficients3D:
-    """Return the error of `[a] f + [c_s] f tan(theta)` with the slope under the centre, as fractions of
-    flat.
-    """
+    """Return the error of `[a] f + [c_s] f tan(theta)`, slope under the centre, over flat."""
     downhill = -np.degrees(np.arctan(surface.local_slope))
     predicted = facet_prediction(X, Y, nu, downhill) / result.flat - 1
     return Coefficients3D(**{**vars(result), "error": result.error - predicted})
@@ -118,8 +116,7 @@ def coefficients(
     width: str = "projected",
     quality: str = "quick",
 ) -> Coefficients3D:
-    """Return the error of the flat influence coefficients for one square element of pressure on a wavy
-    elastic body.
+    """Return the error of the flat coefficients for one square element on a wavy elastic body.
 
     slope_deg: the surface's maximum slope, 0 to 35 degrees. wavelength: 16 to 400, in units of a, half the
     element's edge. position: of the element's centre, x / lambda in [0, 1]: crest 0, flank 0.25 (+x

@@ -26,9 +26,7 @@ def lame_constants(nu: float) -> tuple[float, float]:
 
 
 def depth_scale(surface: Waviness) -> float:
-    """Return the depth l over which the map's waviness dies out; half a wave keeps |h| / l = tan(slope) / pi
-    < 1.
-    """
+    """Return the depth l of the map's waviness; half a wave keeps |h| / l = tan(slope) / pi < 1."""
     return 0.5 * surface.wavelength
 
 
@@ -39,9 +37,7 @@ def mapped(surface: Waviness, points: Array) -> Array:
 
 
 def body_gradients(basis: Basis, surface: Waviness) -> tuple[Array, Array]:
-    """Return the body gradients (3, elements, points, 27) of the shape functions, and weights (elements,
-    points).
-    """
+    """Return gradients (3, elements, points, 27) of shape functions, weights (elements, points)."""
     x, y, zeta = np.asarray(basis.global_coordinates())
     decay = np.exp(zeta / depth_scale(surface))
     stretch = 1 + surface.height(x, y) * decay / depth_scale(surface)

@@ -41,15 +41,13 @@ GAUSS = 24  # points a side over the patch; 48 change no part by more than 1e-4 
 
 
 def _moment(distance: Array, pole: complex) -> NDArray[np.complex128]:
-    """Return the integral of q exp(-q d) / (q + b) over q > 0, d complex with Re d >= 0: 1/d - b exp(b d)
-    E1(b d)."""
+    """Integrate q exp(-q d) / (q + b) over q > 0, Re d >= 0: 1/d - b exp(b d) E1(b d)."""
     result: NDArray[np.complex128] = 1 / distance - pole * np.exp(pole * distance) * exp1(pole * distance)
     return result
 
 
 def wave_kernel(x: Array, y: Array, wavenumber: float) -> NDArray[np.complex128]:
-    """Return the inverse transform of sin^2(angle of k and k + k0), times exp(i k0 x); k0 along x, (x, y) !=
-    0.
+    """Invert the transform of sin^2(angle of k and k + k0), times exp(i k0 x); (x, y) != 0.
 
     That is exp(i k0 x) (2 pi)^-2 times the integral of k0^2 k_y^2 / (|k|^2 |k + k0|^2) exp(i k . x): done
     over k_x by residues it leaves, over k_y = q, q cos(q y) exp(-q |x|) / (k0 +- 2 i q), an exponential
@@ -66,9 +64,7 @@ def wave_kernel(x: Array, y: Array, wavenumber: float) -> NDArray[np.complex128]
 
 
 def waves(surface: Waviness) -> list[tuple[float, float, float]]:
-    """Return (amplitude, k_x, k_y) of the plane waves that make up the surface; an egg-box is two oblique
-    ones.
-    """
+    """Return (amplitude, k_x, k_y) of the surface's plane waves; an egg-box is two oblique ones."""
     k = surface.wavenumber
     if surface.kind is Kind.RIDGE:
         return [(surface.amplitude, k, 0.0)]
@@ -81,9 +77,7 @@ def facet_part(surface: Waviness, x: Array, y: Array, nu: float) -> Array:
 
 
 def far_part(surface: Waviness, x: Array, y: Array, nu: float) -> Array:
-    """Return (m,) the rest of the first order: the slope's variation under the load, and the second term of
-    w1.
-    """
+    """Return (m,) the rest of first order: the slope's variation, and the second term of w1."""
     nodes, weights = np.polynomial.legendre.leggauss(GAUSS)
     sx, sy = np.meshgrid(nodes, nodes, indexing="ij")
     area = np.outer(weights, weights)
@@ -101,9 +95,7 @@ def far_part(surface: Waviness, x: Array, y: Array, nu: float) -> Array:
 
 
 def first_order(surface: Waviness, x: Array, y: Array, nu: float) -> Array:
-    """Return the wavy minus flat displacement (m,) at (x, y), to first order in the slope: `facet_part` +
-    `far_part`.
-    """
+    """Return wavy minus flat displacement (m,) at (x, y), first order: `facet_part` + `far_part`."""
     return facet_part(surface, x, y, nu) + far_part(surface, x, y, nu)
 
 
@@ -117,8 +109,7 @@ def growth_coefficient(nu: float) -> float:
 
 
 def growth(surface: Waviness, x: Array, y: Array, nu: float) -> Array:
-    """Return the part (m,), over flat, that grows with offset / wavelength: a ridge under a point force, k r
-    small.
+    """Return the part (m,), over flat, that grows with offset / wavelength; k r small.
 
     -growth_coefficient(nu) kappa r [ln(2 / (k r)) - gamma + x^2 / r^2], kappa the curvature midway to (x, y).
     """

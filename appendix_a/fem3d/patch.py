@@ -16,8 +16,7 @@ Size = float | Array
 
 
 def normal_integral(x: Array, y: Array, half_x: Size = 1.0, half_y: Size = 1.0) -> Array:
-    """Return the integral of 1/rho over rectangles, from (x, y): X asinh(Y/|X|) + Y asinh(X/|Y|) over their
-    corners.
+    """Return the integral of 1/rho over rectangles: X asinh(Y/|X|) + Y asinh(X/|Y|) at corners.
 
     >>> float(normal_integral(np.zeros(1), np.zeros(1))[0] / np.arcsinh(1.0))
     8.0
@@ -36,9 +35,7 @@ def _times_asinh(u: Array, v: Array) -> Array:
 
 
 def tangential_integral(x: Array, y: Array, half_x: float = 1.0, half_y: float = 1.0) -> Array:
-    """Return the integral of (x - x') / rho^2 over the rectangle: Y ln(rho) + X atan(Y/X) over its
-    corners.
-    """
+    """Return the integral of (x - x') / rho^2: Y ln(rho) + X atan(Y/X) at the rectangle's corners."""
     total = np.zeros_like(x)
     for sx in (-1.0, 1.0):
         for sy in (-1.0, 1.0):
@@ -60,8 +57,7 @@ def tangential_coefficient(x: Array, y: Array, nu: float, half_x: float = 1.0, h
 
 
 def tilted_plane(x: Array, y: Array, nu: float, slope_deg: float, *, projected: bool) -> Array:
-    """Return the exact downward displacement at horizontal offsets on an infinite plane of `slope_deg`, +x
-    downhill.
+    """Return the exact downward displacement on a plane of `slope_deg`, +x downhill.
 
     The flat solution in the plane's own frame: offsets along it are x / cos, the loaded rectangle is 2 /
     cos long if its edge is 2 in projection and 2 if it is 2 along the facet, and down is cos times the
@@ -98,9 +94,7 @@ def cerruti(x: Array, y: Array, z: Array, nu: float) -> Array:
 
 
 def far_field(points: Array, forces: Array, sources: Array, nu: float) -> Array:
-    """Return displacements (3, n) at `points` (3, n) of forces (m, 2), along x and down, at (m, 2) on z =
-    0.
-    """
+    """Return displacements (3, n) at `points` (3, n) of forces (m, 2), along x and down, on z = 0."""
     total = np.zeros_like(points)
     for (along, down), (sx, sy) in zip(forces, sources, strict=True):
         x, y, z = points[0] - sx, points[1] - sy, points[2]

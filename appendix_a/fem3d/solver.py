@@ -61,9 +61,7 @@ class SeparableInverse:
 
 
 def separable_inverse(axes: tuple[Array, Array, Array], component: int, nu: float) -> SeparableInverse:
-    """Return the block (component, component): held on the outer boundary; component y on the symmetry plane
-    as well.
-    """
+    """Invert the block (component, component): held outside; y on the symmetry plane as well."""
     lame, shear = lame_constants(nu)
     free = (slice(1, -1), slice(1 if component == 1 else 0, -1), slice(1, None))
     modes, total = [], np.zeros((1, 1, 1))

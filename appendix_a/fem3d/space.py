@@ -50,9 +50,7 @@ class Space:
         return outer
 
     def tabulated(self) -> Iterator[tuple[slice, Basis]]:
-        """Return the elements in chunks, each with its basis at 3 x 3 x 3 Gauss points (exact on the flat
-        body).
-        """
+        """Return the elements in chunks, with their basis at 3 x 3 x 3 Gauss points."""
         for start in range(0, self.element_nodes.shape[0], CHUNK):
             part = slice(start, min(start + CHUNK, self.element_nodes.shape[0]))
             elements = np.arange(part.start, part.stop)

@@ -99,8 +99,7 @@ def points() -> list[Point]:
 
 
 def row(point: Point, result: Coefficients3D, seconds: float) -> dict[str, object]:
-    """Return one line of the table; errors and their bounds are fractions of flat, in the order of the
-    labels.
+    """Return one line of the table; errors and bounds over flat, in the order of the labels.
 
     Exact flat coefficients and first-order theory are not in it: closed forms of the arguments give both.
     """

@@ -46,16 +46,13 @@ class Table3D:
     uncertainty: dict[Series, dict[float, float]]
 
     def slopes(self, series: Series) -> Array:
-        """Return the tabulated slopes (degrees), rising. Raises InputError for a series that was not
-        computed.
-        """
+        """Return the tabulated slopes (degrees), rising; `InputError` for a series not computed."""
         if series not in self.errors:
             raise InputError("series", series, "one that the table holds")
         return np.array(sorted(self.errors[series]))
 
     def error(self, series: Series, slope_deg: float | Array) -> Array:
-        """Return the errors (..., 10), one body: quotients by tan(slope) between neighbouring slopes, linear
-        in it.
+        """Return the errors (..., 10) of one body: quotients by tan(slope), linear in it.
 
         Below the first slope the quotient is the first one's, where second order is 4 % of it.
         `position` beyond 0.5 is the mirrored one. Raises InputError for a slope beyond the last.
@@ -78,8 +75,7 @@ class Table3D:
     def pair_error(
         self, series: Series, slope_deg: float | Array, lower: tuple[float, float], upper: tuple[float, float]
     ) -> Array:
-        """Return `error` for bodies (E, nu) meeting on one wavy surface; `position` as the lower body sees
-        it.
+        """Return `error` for bodies (E, nu) on one wave; `position` as the lower body sees it.
 
         What is a crest to one is a valley to the other; `series.nu` is not used.
         """
@@ -107,8 +103,7 @@ class Table3D:
 
 
 def slope_of(error: Array, slopes: Array, limit: float = 0.02) -> list[float | None]:
-    """Return per column of `error` (slopes, labels) the smallest slope with |error| >= limit; None if
-    there is none.
+    """Return per column of `error` (slopes, labels) the least slope with |error| >= limit, or None.
 
     >>> slope_of(np.array([[0.0, 0.0], [0.03, 0.0], [0.01, 0.01]]), np.array([0.0, 1.0, 2.0]))
     [1.0, None]

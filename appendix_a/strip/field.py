@@ -10,8 +10,7 @@ Real = NDArray[np.float64]
 
 
 def stresses(x: ArrayLike, y: ArrayLike) -> tuple[Real, Real, Real]:
-    """Return (sigma_x, sigma_y, tau_xy) of (A1) per unit pressure, tension positive; x, y in half-widths, y
-    >= 0.
+    """Return (sigma_x, sigma_y, tau_xy) of (A1), tension positive; x, y in half-widths, y >= 0.
 
     ``theta_1, theta_2`` are the angles in [0, pi] at which the ends x = +1 and x = -1 see the point: (A1)'s
     ``tan theta = y / (x -+ a)`` alone leaves them open by pi, and the principal branch of arctan would be

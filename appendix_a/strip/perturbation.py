@@ -33,8 +33,7 @@ Real = NDArray[np.float64]
 def first_order(
     slope_deg: float, wavelength: float, position: float, nu: float, *, offsets: ArrayLike
 ) -> tuple[Real, Real]:
-    """Return (wavy, flat) vertical displacements at ``offsets`` (m,) from the strip centre, relative to the
-    centre.
+    """Return (wavy, flat) displacements at ``offsets`` (m,), vertical, relative to the centre.
 
     Profile (A2) with maximum slope ``slope_deg``, the strip's centre at x = position * wavelength (crest 0,
     flank 0.25 with +x downhill, trough 0.5), unit pressure along the local normal; lengths in the strip's

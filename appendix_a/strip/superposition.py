@@ -44,9 +44,7 @@ def pseudo_tractions(x: ArrayLike, profile: Sinusoid, theta: Theta) -> tuple[Rea
 
 
 def applied(x: ArrayLike, profile: Sinusoid) -> tuple[Real, Real]:
-    """Return the traction of unit pressure along the local normal on |x| < 1, what the wavy line should
-    carry.
-    """
+    """Return the traction of unit pressure along the local normal on |x| < 1."""
     x = np.asarray(x, dtype=float)
     inside, slope = np.abs(x) < 1, profile.slope(x)
     return np.where(inside, -np.sin(slope), 0.0), np.where(inside, np.cos(slope), 0.0)
@@ -71,8 +69,7 @@ def printed(
 
 
 def flamant(x: float, s: Real, along: Real, down: Real, nu: float) -> float:
-    """Return the vertical displacement at x of a half-plane's boundary under forces (along, down) (n,) at s,
-    E = 1.
+    """Return a half-plane's vertical displacement at x under forces (along, down) (n,) at s, E = 1.
 
     Up to the constant of the datum; Johnson 1985, Eqs (2.19) and (2.22).
     """

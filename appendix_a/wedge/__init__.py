@@ -51,8 +51,7 @@ def stresses(
 def displacements(
     r: ArrayLike, theta: ArrayLike, gamma: float, nu: float, half_width: float = 1.0
 ) -> tuple[Real, Real]:
-    """Return the plane-strain displacements relative to the tip: (along the bisector, across it towards
-    +theta).
+    """Return displacements relative to the tip: along the bisector, across it towards +theta.
 
     In units of face pressure times ``half_width`` over E; arguments and errors as for ``stresses``, and an
     InputError for a Poisson ratio ``nu`` outside [0, 1/2]. The bisector does not turn (symmetry), so the

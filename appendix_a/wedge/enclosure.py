@@ -19,8 +19,7 @@ TAIL_EXPONENT = 50.0
 
 
 def stresses(r: float, theta: float, gamma: float, bits: int = 96) -> tuple[Any, Any, Any]:
-    """Return ``flint.arb`` enclosures of (sigma_r, sigma_theta, tau), unit pressure on 0 < r < 1 of both
-    faces.
+    """Return enclosures (``arb``) of (sigma_r, sigma_theta, tau), unit pressure on 0 < r < 1.
 
     The doubles r, theta, gamma are taken as exact. Raises ImportError without python-flint.
     """

@@ -152,9 +152,7 @@ def half_plane(r: Real, delta: Real, sine: Real) -> tuple[Real, Complex]:
 
 
 def unit_stresses(r: Real, theta: Real, gamma: float) -> tuple[Real, Real, Real]:
-    """Return (sigma_r, sigma_theta, tau_rtheta) at points of shape (n,), unit pressure on 0 < r < 1 of the
-    faces.
-    """
+    """Return (sigma_r, sigma_theta, tau_rtheta) at points (n,), unit pressure on 0 < r < 1."""
     alpha = np.pi / 2 - gamma
     limit = np.abs(np.log(r)) > (FAR * alpha if alpha <= NARROW else np.inf)
     if limit.any():
@@ -179,8 +177,7 @@ def limit_stresses(r: Real, theta: Real, alpha: float) -> tuple[Real, Real, Real
 
 
 def unit_displacements(r: Real, theta: Real, gamma: float, nu: float) -> tuple[Real, Real]:
-    """Return (u along the bisector, u across it) at points of shape (n,) relative to the tip, unit pressure
-    over E.
+    """Return u along and across the bisector at points (n,), from the tip, unit pressure over E.
 
     ``E u = (1 + nu) {kappa phi - zeta conj(phi') - conj(psi)}``, kappa = 3 - 4 nu. The elementary parts of
     phi and psi are ``zeta log(1 - b/zeta) - b log(1 - zeta/b)`` and ``-conj(b) log(1 - zeta/b)`` over 2 pi

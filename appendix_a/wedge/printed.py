@@ -71,8 +71,7 @@ def stresses(r: float, theta: float, gamma: float, sign: int = PRINTED_SIGN) -> 
 
 
 def _integrals(r: float, theta: float, gamma: float, width: float) -> tuple[float, float, float]:
-    """Return the integrals of (A4), (A5), (A6); panels of ``width`` times the shortest scale of the
-    integrands."""
+    """Return the integrals of (A4), (A5), (A6); panels of ``width`` times the shortest scale."""
     phase, alpha = np.log(1 / r), np.pi / 2 - gamma
     end = NEGLIGIBLE / (alpha - abs(theta))
     panels = int(np.ceil(end * (1 + alpha + abs(phase)) / (4 * width)))

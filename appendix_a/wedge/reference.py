@@ -38,9 +38,7 @@ class Reference:
 
 
 def kernels(z: Any, theta: Any, gamma: Any) -> tuple[Any, Any, Any]:
-    """Return the Mellin kernels of r (sigma_r, sigma_theta, tau): ``r sigma = (1/2 pi i) int kernel(z) r^-z
-    dz``.
-    """
+    """Return the kernels k of (sigma_r, sigma_theta, tau): r sigma = (1/2 pi i) int k(z) r^-z dz."""
     alpha = mp.pi / 2 - gamma
     d = mp.sin(2 * alpha * z) + z * mp.sin(2 * alpha)
     plus, minus = mp.sin((1 + z) * alpha), mp.sin((1 - z) * alpha)

@@ -39,7 +39,7 @@ class Bias(NamedTuple):
     spread: float
 
 
-class Estimate(NamedTuple):
+class Intercept(NamedTuple):
     """A number of the continuous problem, and the 95 % bound of its error.
 
     ``orders`` are those at which a grid's number approaches it and at which the bound falls, in element size.
@@ -49,19 +49,19 @@ class Estimate(NamedTuple):
     half_width: float
     orders: tuple[float, float] = (1.0, DEFAULT_ORDER)
 
-    def widened(self, bound: float) -> Estimate:
+    def widened(self, bound: float) -> Intercept:
         """Return the estimate with an independent error of that 95 % bound added."""
         return self._replace(half_width=math.hypot(self.half_width, bound))
 
     def predicted_bound(self, found: float, finer: float) -> float:
         """Return the error bound on a grid with elements ``finer`` times the size, from this grid's number.
 
-        >>> first, second = Estimate(1.0, 0.0), Estimate(1.0, 0.0, orders=(2.0, 2.0))
+        >>> first, second = Intercept(1.0, 0.0), Intercept(1.0, 0.0, orders=(2.0, 2.0))
         >>> first.predicted_bound(1.5, 0.5), second.predicted_bound(1.5, 0.5)
         (0.25, 0.125)
         """
         approaching, falling = self.orders
-        return Estimate(self.value, self.half_width * finer**falling).error_bound(
+        return Intercept(self.value, self.half_width * finer**falling).error_bound(
             self.value + (found - self.value) * finer**approaching
         )
 
@@ -71,7 +71,7 @@ class Estimate(NamedTuple):
         A normal distribution's, of which the bound needs one side alone where the number found is far off.
         Of the wider tails that make ``half_width`` one side is shorter still.
 
-        >>> [round(Estimate(1.0, 0.1).error_bound(found), 6) for found in (1.0, 1.05, 1.5)]
+        >>> [round(Intercept(1.0, 0.1).error_bound(found), 6) for found in (1.0, 1.05, 1.5)]
         [0.1, 0.134, 0.583923]
         """
         distance, deviation = abs(found - self.value), self.half_width / _TWO_SIDED
@@ -80,7 +80,7 @@ class Estimate(NamedTuple):
         return deviation * math.sqrt(scipy.special.chndtrix(0.95, 1.0, (distance / deviation) ** 2))
 
 
-def fit_line(values: Array, weights: Array, prior: Prior, bias: Bias | None = None) -> Estimate:
+def fit_line(values: Array, weights: Array, prior: Prior, bias: Bias | None = None) -> Intercept:
     """Return the estimate of ``q`` from ``values`` on grids coarse to fine with ``w_k = weights``.
 
     ``prior.scatter`` is sigma of the finest grid in the number's unit. Zeros on all grids are exact only
@@ -90,7 +90,7 @@ def fit_line(values: Array, weights: Array, prior: Prior, bias: Bias | None = No
     True
     """
     if not (np.any(values) or prior.scatter > 0):
-        return Estimate(0.0, 0.0)
+        return Intercept(0.0, 0.0)
     factors, shares = (np.zeros(1), np.ones(1)) if bias is None else _factors(bias.mean, bias.spread)
     rest = values - factors[:, None] * (0 if bias is None else bias.sizes)
     precision = weights**-2.0
@@ -103,7 +103,7 @@ def fit_line(values: Array, weights: Array, prior: Prior, bias: Bias | None = No
     shares = shares / shares.sum()
     value = float(shares @ centre)
     scale = np.sqrt(variance / precision.sum())
-    return Estimate(value, _bound(shares, centre - value, scale, freedom))
+    return Intercept(value, _bound(shares, centre - value, scale, freedom))
 
 
 def _bound(shares: Array, centres: Array, scales: Array, freedom: float) -> float:
@@ -129,7 +129,6 @@ def _bound(shares: Array, centres: Array, scales: Array, freedom: float) -> floa
 
 @cache
 def _factors(mean: float, spread: float) -> tuple[Array, Array]:
-    """Return the nodes and weights of ``c``'s prior: Gauss-Hermite; nine give nine bars in ten to 1.5 % (a
-    test)."""
+    """Return nodes and weights of ``c``'s prior; nine give nine bars in ten to 1.5 % (a test)."""
     nodes, weights = np.polynomial.hermite_e.hermegauss(9)
     return mean + spread * nodes, weights / weights.sum()

@@ -42,8 +42,7 @@ def edge_faces(pressure: Array, clearance: Array, grid: Grid) -> tuple[float, ..
 
 
 def wall_pressure(pressure: Array, clearance: Array, grid: Grid) -> float:
-    """Return the maximum pressure at a wall: of faces towards which it does not fall, beyond which the gap
-    hardly rises. There the continuous pressure is singular, however low the face's own is.
+    """Return the maximum pressure of faces towards which it does not fall, where the gap hardly rises beyond.
 
     >>> pressure, gap = np.array([[0.0, 0.0, 3.0, 2.0, 2.0]]), np.array([[4.0, 3.0, 0.0, 0.0, 0.0]])
     >>> [wall_pressure(pressure, gap**power, Grid((1, 5), (1.0, 5.0))) for power in (1, 3)]
@@ -96,8 +95,7 @@ def _ratio(near: Array, far: Array) -> Array:
 
 
 def single_element_share(edge: float, area: float) -> float:
-    """Return the edge's share of an area over that of a single element: 1 where all patches are single
-    elements, and without any area.
+    """Return the edge's share of an area over that of a single element: at most 1, and 1 without area.
 
     >>> single_element_share(4 * EDGE_SHARE, 1.0), single_element_share(EDGE_SHARE, 1.0)
     (1.0, 0.25)

@@ -77,7 +77,6 @@ def _last_place(error: float) -> int:
 
 
 def _printed(value: float, place: int) -> str:
-    """Return the value rounded to ``10^place``, with its last zeros."""
     shown = round(value, -place)
     if shown == 0 or _FIXED[0] <= abs(shown) < _FIXED[1]:
         return f"{shown:.{max(-place, 0)}f}"

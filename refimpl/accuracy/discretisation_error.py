@@ -28,7 +28,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from refimpl.accuracy.bayesian_line import DEFAULT_ORDER, Bias, Estimate, Prior, fit_line
+from refimpl.accuracy.bayesian_line import DEFAULT_ORDER, Bias, Intercept, Prior, fit_line
 from refimpl.accuracy.constants import constant, table
 from refimpl.accuracy.first_contact import (
     HERTZ_EXPONENTS,
@@ -75,10 +75,9 @@ its bars, and judged on random scenes (`verification.cases.error_bars.pulled`)."
 
 
 def rest_sizes(results: Sequence[GridFeatures]) -> Array:
-    """Return units of the scatter of mu without tau's share on each grid, shape (4, grids).
+    """Return units of the scatter of mu without tau's share, shape (4, grids).
 
-    Edge fraction to the power 3/2, times mu; slopes within elements, each by itself and in phase; slopes at a
-    free border.
+    The edge fraction's 3/2 power times mu; slopes within elements, apart and in phase; at a free border.
     """
     mu = abs(results[-1].numbers["friction_coefficient"])
     slopes = (slope_scatter(results, name) for name in ("slope_sampling_error", "slope_line_error"))
@@ -86,10 +85,9 @@ def rest_sizes(results: Sequence[GridFeatures]) -> Array:
 
 
 def approach_sizes(results: Sequence[GridFeatures]) -> Array:
-    """Return units of the scatter of an approach under a load on each grid (m), shape (5, grids).
+    """Return units of the scatter of an approach under a load (m), shape (5, grids).
 
-    The contact's edge, as peaks err; the gap's; a free border, where the pressure of a contact that is cut
-    off is singular as under a punch (order h); differences that slopes are (order h^2); first contact.
+    The contact's edge; the gap's; a free border (order h); differences for slopes (h^2); first contact.
     """
     last = results[-1]
     unit = max(abs(last.numbers["approach"]), last.depth)
@@ -114,15 +112,12 @@ class _Grids:
         self.spacing = self.each(lambda result: result.grid.element_size)
 
     def each(self, number: Callable[[GridFeatures], float]) -> Array:
-        """Return one feature of each grid."""
         return np.array([number(result) for result in self.results])
 
     def found(self, name: str) -> Array:
-        """Return one reported number of each grid."""
         return self.each(lambda result: result.numbers[name])
 
     def finest(self, name: str) -> float:
-        """Return the magnitude of the finest grid's number."""
         return abs(self.results[-1].numbers[name])
 
     def peak_scatter(self, unit: float) -> Array:
@@ -133,31 +128,27 @@ class _Grids:
 
     def smooth(
         self, values: Array, freedom: float, scales: Array, sizes: Array, bias: Bias | None = None
-    ) -> Estimate:
-        """Estimate from ``values`` that scatter by the root of the sum of squared ``scales`` times
-        ``sizes`` (parts, grids)."""
+    ) -> Intercept:
+        """Estimate from values that scatter by the root sum of squares of ``scales`` times ``sizes``."""
         size = np.hypot.reduce(scales[:, None] * sizes)
         if math.isinf(size[-1]):
-            return Estimate(float(values[-1]), math.inf)
+            return Intercept(float(values[-1]), math.inf)
         return fit_line(values, _weights(size, self.spacing), Prior(float(size[-1]), freedom), bias)
 
 
-def estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
-    """Return estimates of the reported numbers, from grids coarse to fine (one at least).
-
-    A maximum pressure that is the hardness is exact.
-    """
+def estimates(results: Sequence[GridFeatures]) -> dict[str, Intercept]:
+    """Return estimates of the reported numbers from grids coarse to fine; the hardness as p_max is exact."""
     found, last = _estimates(results), results[-1]
     if last.yields:
-        found["max_pressure"] = Estimate(last.numbers["max_pressure"], 0.0)
+        found["max_pressure"] = Intercept(last.numbers["max_pressure"], 0.0)
     else:
         area = _area_that_may_yield(last, found["max_pressure"])
         is_open = area > 0 and math.isinf(found["contact_area"].half_width)
-        found["plastic_area"] = Estimate(0.0, math.inf if is_open else area)
+        found["plastic_area"] = Intercept(0.0, math.inf if is_open else area)
     return found
 
 
-def _area_that_may_yield(fine: GridFeatures, peak: Estimate) -> float:
+def _area_that_may_yield(fine: GridFeatures, peak: Intercept) -> float:
     """Return the area (m^2) of elements whose pressure is within the maximum's error of the hardness."""
     if fine.hardness is None:
         return 0.0
@@ -169,7 +160,7 @@ def _area_that_may_yield(fine: GridFeatures, peak: Estimate) -> float:
     return fine.highest_areas[int(level * (len(fine.highest_areas) - 1))]
 
 
-def _estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
+def _estimates(results: Sequence[GridFeatures]) -> dict[str, Intercept]:
     grids = _Grids([at_first_contact(result) for result in results])
     area, load = _area(grids), grids.finest("normal_force")
     dmu_dA = grids.each(lambda result: result.dmu_dA)
@@ -200,22 +191,21 @@ def _estimates(results: Sequence[GridFeatures]) -> dict[str, Estimate]:
     return widened
 
 
-def _sheared(grids: _Grids, name: str, area: Estimate, share: Array, unit: float) -> Estimate:
+def _sheared(grids: _Grids, name: str, area: Intercept, share: Array, unit: float) -> Intercept:
     """Return a number that contains ``share`` times the contact area, and slopes times ``unit``."""
     values = grids.found(name) - share * grids.found("contact_area")
     rest = grids.smooth(values, BULK_FREEDOM, BULK_SCATTER, unit * rest_sizes(grids.results))
     per_area = float(share[-1])
-    return Estimate(rest.value + per_area * area.value, rest.half_width).widened(per_area * area.half_width)
+    return Intercept(rest.value + per_area * area.value, rest.half_width).widened(per_area * area.half_width)
 
 
-def _peak(grids: _Grids) -> Estimate:
-    """Return the maximum pressure: that of the parabola, minus its bias, a share of the curvature drop.
+def _peak(grids: _Grids) -> Intercept:
+    """Return the maximum pressure: the parabola's, minus its bias, a share of the curvature drop.
 
-    Elements of constant pressure displace less than the waves they stand for, by the share ``q^2 h^2 / 24``:
-    for a single wave that is a 24th of the drop. Band-limited pressures have no such bias.
+    Elements of constant pressure displace less than waves, by ``q^2 h^2 / 24``; band-limited ones do not.
     """
     if not grids.results[-1].peak.smooth:
-        return Estimate(grids.finest("max_pressure"), math.inf)
+        return Intercept(grids.finest("max_pressure"), math.inf)
     drop = grids.each(lambda result: result.peak.curvature_drop)
     bias = Bias(drop, 0.0 if grids.results[-1].grid.band_limited else PEAK_BIAS, PEAK_BIAS_SPREAD)
     size = grids.each(lambda result: result.peak.widened(result.peak.curvature_drop))
@@ -225,13 +215,13 @@ def _peak(grids: _Grids) -> Estimate:
     return found._replace(orders=(2.0, 2.0))
 
 
-def _approach(grids: _Grids) -> Estimate:
+def _approach(grids: _Grids) -> Intercept:
     """Return the approach under a load, counted from the first contact of the surfaces themselves."""
     values = grids.found("approach") + grids.each(lambda result: result.first_contact.height)
     return grids.smooth(values, APPROACH_FREEDOM, APPROACH_SCATTER, approach_sizes(grids.results))
 
 
-def _force(grids: _Grids) -> Estimate:
+def _force(grids: _Grids) -> Intercept:
     """Return the force at an approach, with the error of first contact by its exponent of the approach."""
     load = grids.finest("normal_force")
     sizes = grids.peak_scatter(load), HERTZ_EXPONENTS["normal_force"] * load * grids.each(first_contact_share)
@@ -240,11 +230,9 @@ def _force(grids: _Grids) -> Estimate:
 
 
 def _weights(size: Array, spacing: Array) -> Array:
-    """Return ``w_k``: each grid's size of the scatter over the finest grid's, and not less than a finer
-    grid's.
+    """Return ``w_k``: each grid's scatter over the finest grid's, and not less than a finer grid's.
 
-    So a number that keeps changing with ever finer elements is not taken as converged. Where the finest grid
-    has no scatter, the weights are those of an area.
+    So a number that keeps changing is not taken as converged. Without scatter they are those of an area.
     """
     if not size[-1] > 0:
         steps: Array = (spacing / spacing[-1]) ** DEFAULT_ORDER
@@ -254,8 +242,7 @@ def _weights(size: Array, spacing: Array) -> Array:
 
 
 def discretisation(results: Sequence[GridFeatures]) -> dict[str, dict[str, float]]:
-    """Return the discretisation parts of the finest grid's numbers: none without contact, infinite where it
-    diverged."""
+    """Return the parts of the finest grid's numbers: none without contact, infinite where it diverged."""
     found = results[-1].numbers
     if not results[-1].touching:
         return {}
@@ -266,7 +253,7 @@ def discretisation(results: Sequence[GridFeatures]) -> dict[str, dict[str, float
     return {name: {"discretisation": bound} for name, bound in bounds.items()}
 
 
-def _area(grids: _Grids) -> Estimate:
+def _area(grids: _Grids) -> Intercept:
     """Return the contact area: the excess along the edge is a regressor, and the scatter is that of a count.
 
     In a contact of at most four elements the faces do not locate the edge: the error bar is the whole area.

@@ -28,8 +28,7 @@ HERTZ_EXPONENTS = {
 
 
 def at_first_contact(features: GridFeatures) -> GridFeatures:
-    """Return features at a prescribed approach, corrected by how far the grid's first contact lies too
-    low."""
+    """Return features at a prescribed approach, corrected for a first contact that lies too low."""
     approach = features.numbers["approach"]
     indentation = approach + features.first_contact.height
     if features.loaded or indentation == 0 or not features.numbers["normal_force"] > 0:
@@ -67,7 +66,6 @@ def _presses(features: GridFeatures, share: float) -> bool:
 
 
 def _at(features: GridFeatures, share: float) -> GridFeatures:
-    """Return the features at that share of the approach, by the exponents of Hertz contact."""
     numbers = {
         name: value * share ** HERTZ_EXPONENTS.get(name, 0.0) for name, value in features.numbers.items()
     }

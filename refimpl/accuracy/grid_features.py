@@ -21,9 +21,7 @@ from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 
-EXCESS = np.array(
-    [*table("face_excess").ravel(), constant("straight_excess"), constant("border_excess")]
-)
+EXCESS = np.array([*table("face_excess").ravel(), constant("straight_excess"), constant("border_excess")])
 """Elements by which a counted area exceeds, of each of `GridFeatures.excess_terms`."""
 _LEVELS = 16  # pressures in `highest_areas`
 _TROUGH_ERROR = constant("trough_error")
@@ -110,10 +108,7 @@ class GridFeatures:
 
     @property
     def excess(self) -> float:
-        """Mean excess of the counted contact area along its edge (m^2), which may be negative.
-
-        Elements at the hardness carry as much as their area can: the excess is at most what others do not.
-        """
+        """Mean excess of the counted area along its edge (m^2); of a cap, at most what others leave."""
         if not self.touching:
             return 0.0
         found = float(EXCESS @ self.excess_terms) * self.grid.element_area
@@ -121,8 +116,7 @@ class GridFeatures:
 
     @property
     def excess_terms(self) -> Array:
-        """Numbers that the mean excess is made of: faces by kind, faces beyond the second of a run along an
-        axis, elements at which a free border cuts the contact off."""
+        """Faces by kind, faces beyond the second of a run along an axis, elements at a free border."""
         area = self.numbers["contact_area"]
         border = self.border_fraction * area * (1 - area / self.grid.nominal_area) / self.grid.element_area
         return np.array([*self.faces, self.straight.faces, border])
@@ -145,10 +139,7 @@ class GridFeatures:
 
     @classmethod
     def of(cls, problem: Problem, state: State, *stated: Mapping[str, Mapping[str, float]]) -> GridFeatures:
-        """Return the features of a state; ``stated`` are the error parts of its own grid.
-
-        Approaches of periodic problems do not count from first contact.
-        """
+        """Return the features of a state; ``stated`` are the error parts of its own grid."""
         grid, per_area = problem.grid, friction_per_area(problem.friction, state.forces.normal)
         by_tau = per_area * state.contact_area
         sheared = by_tau if problem.friction.is_linear else abs(state.friction_coefficient)
@@ -253,8 +244,7 @@ def undecided_area(pressure: Array, grid: Grid) -> float:
 def hidden_gap(problem: Problem, state: State) -> float:
     """Return the mean gap (m) of elements amid the contact where the pressure's trough reaches zero.
 
-    The trough is that of the parabola through an element and its neighbours, less a share of its second
-    differences; the pressure missing there opens one element against its neighbours.
+    The pressure missing in the trough of a parabola opens one element against its neighbours.
     """
     grid, pressure = problem.grid, state.pressure
     here, *near = _undecided(pressure, grid)
@@ -269,8 +259,7 @@ def hidden_gap(problem: Problem, state: State) -> float:
 
 
 def _undecided(pressure: Array, grid: Grid) -> Array:
-    """Return the pressures of the elements of `undecided_area` and their neighbours along x and y, shape
-    ``(5, n)``."""
+    """Return the pressures ``(5, n)`` of elements of `undecided_area` and their neighbours along x and y."""
     p = grid.padded(pressure[grid.window_around(pressure > 0, margin=1).slices], 1)
     five = p[1:-1, 1:-1], p[2:, 1:-1], p[:-2, 1:-1], p[1:-1, 2:], p[1:-1, :-2]
     amid = np.logical_and.reduce([field > 0 for field in five])
@@ -279,11 +268,9 @@ def _undecided(pressure: Array, grid: Grid) -> Array:
 
 
 def slope_displacement_error(problem: Problem, state: State) -> float:
-    """Return how far the slopes' differences leave ``u / (cos theta_x cos theta_y)`` open, but for a factor.
+    """Return how far the slopes' differences leave ``u / (cos theta_x cos theta_y)`` open (m).
 
-    Central differences of a wave of number q lack the share ``(q h)^2 / 6`` of its tangent; the second
-    differences of tangents are ``(q h)^2`` of them. The root mean squares by pressure are taken: of u, of the
-    tangents and of their second differences.
+    Central differences of a wave q lack ``(q h)^2 / 6`` of its tangent; second ones are ``(q h)^2`` of it.
     """
     pressure, slopes = state.pressure, state.slopes
     total = float(pressure.sum())
@@ -328,10 +315,7 @@ def slope_sampling_error(pressure: Array, slopes: Slopes, grid: Grid) -> tuple[f
 
 
 def _in_phase(load: Array) -> Array:
-    """Return the squares of the sums along lines, summed over the lines of each axis and diagonal.
-
-    Each counts with the square of its share of what it would be if all of the line's loads were equal.
-    """
+    """Return squared sums along lines of each axis and diagonal, by the squared share of equal loads."""
     i, j = (np.arange(count) for count in load.shape)
     found = []
     for lines in (i[:, None] + 0 * j, 0 * i[:, None] + j, i[:, None] + j, i[:, None] - j + len(j)):

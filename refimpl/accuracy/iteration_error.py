@@ -47,11 +47,7 @@ def reported_numbers(problem: Problem, state: State) -> dict[str, float]:
 
 
 def without_rule(law: FrictionLaw) -> tuple[str, ...]:
-    """Return the numbers whose error bars no rule gives: what an element too many adds is known of tau alone.
-
-    Where ``r - slope f`` falls to zero with the pressure, errors along the contact's edge are of another
-    order.
-    """
+    """Return the numbers without a rule for error bars: tau's alone is known, as of a linear law."""
     corrected = tuple(name for name, raw in CORRECTED.items() if raw in _SHEARED)
     return () if law.is_linear else (*_SHEARED, *corrected)
 
@@ -59,12 +55,9 @@ def without_rule(law: FrictionLaw) -> tuple[str, ...]:
 def iteration_parts(problem: Problem, state: State) -> Uncertainty:
     """Return what the certificate leaves open.
 
-    Forces and lengths are uncertain by the largest residual: of the approach from first contact, and of the
-    normal force, which slopes turn to friction and to Q. The area is uncertain by the elements whose pressure
-    or clearance is within ten residuals of zero, and friction by tau on them. The maximum pressure is
-    uncertain by the pressure that would close what is left of the gap at the highest elements, where that is
-    more; at the hardness it is certain, and the plastic area is uncertain as the area is. Where no contact is
-    elastic, the approach is uncertain by half the interval that the load leaves.
+    Forces and lengths by the largest residual; areas by elements within ten residuals of zero pressure or
+    clearance, and friction by tau on them; the maximum pressure by what would close the gap at the highest
+    elements; the approach of a contact without elastic elements by half the interval that the load leaves.
     """
     residual = state.certificate.largest
     margin = _MARGIN * residual
@@ -101,11 +94,7 @@ def _approach_interval(state: State) -> float:
 
 
 def _peak_misfit(problem: Problem, state: State) -> float:
-    """Return the pressure (Pa) that closes the clearance of the highest elements, each by itself.
-
-    Those are elements with half of the maximum pressure; at edges clearances are larger, and no peak is
-    there.
-    """
+    """Return the pressure (Pa) that closes the clearance of the highest elements, each by itself."""
     if state.max_pressure == 0:
         return 0.0
     misfit = float(np.abs(state.v[state.pressure >= 0.5 * state.max_pressure] - state.approach).max())
@@ -113,11 +102,9 @@ def _peak_misfit(problem: Problem, state: State) -> float:
 
 
 def active_set_parts(problem: Problem, state: State) -> Uncertainty:
-    """Return the parts of elements that violate the law: without adhesive shear they are in contact, with it
-    they would not be.
+    """Return the parts of elements that are in contact only without adhesive shear.
 
-    A law that turns tau on with pressure, however soon, leaves such elements a share of it (the case
-    ``tau/shares``): mu is uncertain by all of tau on them, the area by the elements.
+    Some laws give them a share of it (case ``tau/shares``): all of tau on them is uncertain.
     """
     load = problem.nominal_load(state.forces.normal)
     violating = state.certificate.law_violations * problem.grid.element_area
@@ -128,11 +115,7 @@ def active_set_parts(problem: Problem, state: State) -> Uncertainty:
 
 
 def merged(*several: Mapping[str, Mapping[str, float]]) -> Uncertainty:
-    """Return all parts of all numbers; of parts with one name the last is kept.
-
-    >>> merged({"approach": {"iteration": 1.0}}, {"approach": {"discretisation": 2.0}})
-    {'approach': {'iteration': 1.0, 'discretisation': 2.0}}
-    """
+    """Return all parts of all numbers; of parts with one name the last is kept."""
     result: Uncertainty = {}
     for parts in several:
         for name, values in parts.items():

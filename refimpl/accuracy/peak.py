@@ -96,11 +96,7 @@ def highest(field: Array, grid: Grid) -> Peak:
 
 
 def deepest(field: Array) -> Peak:
-    """Return the peak of the field turned over, without regard to others or to contact.
-
-    >>> deepest(-np.pad([[3.0]], 3))
-    Peak(height=3.0, curvature_drop=12.0, non_parabolicity=1.0, smooth=True)
-    """
+    """Return the peak of the field turned over, without regard to others or to contact."""
     i, j = (index + _REACH for index in np.unravel_index([np.argmin(field)], field.shape))
     lines = _lines(-np.pad(field, _REACH, mode="edge"), i, j, _REACH)
     height, drop, rest = (float(value[0]) for value in _parabolas(lines))
@@ -137,10 +133,7 @@ def on_crest(field: Array, surface: Array, grid: Grid, share: float = _CREST_RIV
 
 
 def _peak(padded: Array, contact: Mask, least: float) -> Peak:
-    """Return the peak of all maxima of at least ``least``, in a field with a frame of `_REACH` elements.
-
-    ``contact`` has that frame too, without contact beyond a free border.
-    """
+    """Return the peak of all maxima of at least ``least``; fields have a frame of `_REACH` elements."""
     i, j = _maxima(padded, _REACH, least)
     heights, drops, rests = _parabolas(_lines(padded, i, j, _REACH))
     around = contact[i - 1, j] & contact[i + 1, j] & contact[i, j - 1] & contact[i, j + 1]
@@ -149,8 +142,7 @@ def _peak(padded: Array, contact: Mask, least: float) -> Peak:
 
 
 def _maxima(padded: Array, frame: int, least: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return the places in a field with a frame of elements: at least ``least``, and no lower than those
-    beside."""
+    """Return the places in a framed field: at least ``least``, and no lower than those beside."""
     inner, back, ahead = slice(frame, -frame), slice(frame - 1, -frame - 1), slice(frame + 1, 1 - frame)
     field = padded[inner, inner]
     maxima: Mask = field >= least
@@ -161,15 +153,13 @@ def _maxima(padded: Array, frame: int, least: float) -> tuple[NDArray[np.intp], 
 
 
 def _lines(padded: Array, i: NDArray[np.intp], j: NDArray[np.intp], reach: int) -> Array:
-    """Return the elements to ``reach`` on either side of each place, along x and y: shape ``(2, 2 reach + 1,
-    n)``."""
+    """Return the elements to ``reach`` about each place, along x and y: ``(2, 2 reach + 1, n)``."""
     near = np.arange(-reach, reach + 1)[:, None]
     return np.array([padded[i + near, j], padded[i, j + near]])
 
 
 def _parabolas(lines: Array) -> tuple[Array, Array, Array]:
-    """Return the height, drop and non-parabolicity of each place with ``lines`` (2, 5, n) about it, a maximum
-    along both."""
+    """Return the height, drop and non-parabolicity of maxima with ``lines`` (2, 5, n) about them."""
     farther_back, back, top, ahead, farther = lines.swapaxes(0, 1)
     bends, rise = 2 * top - back - ahead, ahead - back
     gains = np.zeros_like(bends)

@@ -32,11 +32,7 @@ def check_accuracy(accuracy: float) -> None:
 
 
 def tolerance_for(accuracy: float) -> float:
-    """Return the certificate tolerance for an accuracy: a small share of it, and at least 1e-8.
-
-    >>> tolerance_for(0.01)
-    1e-05
-    """
+    """Return the certificate tolerance for an accuracy: a small share of it, and at least 1e-8."""
     return min(1e-5, max(1e-8, _ITERATION_SHARE * accuracy))
 
 
@@ -64,16 +60,11 @@ def refine_until(
 ) -> Refinement:
     """Solve grid after grid until the bar of ``quantity`` is within ``accuracy`` times its value.
 
-    On a slender domain all numbers of elements along the longer side are ``slenderness`` times larger.
-
-    Parts that no grid reduces (`unfalling`) are summed first. Where they exceed the accuracy, grids are
-    refined until the rest is a quarter of them, and no finer than the data allow; then the refinement ends
-    with a reason. Neglected terms are put back by ``restored``, which solves the last grid again, once they
-    take more than a quarter of what those parts leave. An accuracy that even the finest size cannot give ends
-    the refinement. A grid that ``features_at`` refuses by `InputError` (memory, limits) is replaced by the
-    next coarser one, as long as that is finer than the last: a demand that cannot be met within limits ends
-    on the finest grid within them, as looser ones do. One that is `Unfinished` ends the refinement on the
-    grid before.
+    Numbers of elements along the longer side are ``slenderness`` times larger on a slender domain. Where
+    parts that no grid reduces (`unfalling`) exceed the accuracy, grids are refined until the rest is a
+    quarter of them, and no finer than the data allow. ``restored`` puts neglected terms back once they take
+    more than a quarter of what those parts leave. A grid that ``features_at`` refuses by `InputError` is
+    replaced by the next coarser one; one that is `Unfinished` ends the refinement, with a reason.
     """
     data = data or DataShares()
     results = [features_at(M * slenderness) for M in FIRST_GRIDS]
@@ -125,8 +116,9 @@ class DataShares:
 
 
 def unfalling(results: Sequence[GridFeatures], quantity: str, data: DataShares) -> dict[str, float]:
-    """Return the parts that no grid reduces, in the number's unit: data and border as they will be left, and
-    tau's active set where it did not fall on the last grid."""
+    """Return the parts that no grid reduces: data and border as they will be left, and tau's active set
+    where it did not fall on the last grid.
+    """
     last = longer_side(results[-1])
     own = results[-1].parts.get(quantity, {})
     most = max(last, data.finest) if math.isfinite(data.finest) else last
@@ -192,10 +184,7 @@ def predicted_size(
     grid_sizes: Sequence[int],
     data: DataShares | None = None,
 ) -> int | None:
-    """Return the coarsest size whose predicted bar is short enough; None if none is.
-
-    The data's part is known on every grid, that of neglected terms stays, the others fall by their order.
-    """
+    """Return the coarsest size whose predicted bar is short enough; None if none is."""
     fine, data = results[-1], data or DataShares()
     found, estimate = fine.numbers[quantity], estimates(results)[quantity]
     parts, last, order = fine.parts.get(quantity, {}), longer_side(fine), _own_order(results, quantity)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import scipy
 
-from refimpl.accuracy.bayesian_line import DEFAULT_ORDER, Estimate
+from refimpl.accuracy.bayesian_line import DEFAULT_ORDER, Intercept
 from refimpl.accuracy.constants import constant, table
 from refimpl.accuracy.contact_edge import KINDS, single_element_share
 from refimpl.accuracy.grid_features import GridFeatures
@@ -31,10 +31,8 @@ PLASTIC_FREEDOM = constant("plastic_freedom")  # weight of the prior
 def area_counts(result: GridFeatures) -> Array:
     """Return the numbers of elements by which an area scatters about its mean excess, each by its own unit.
 
-    Faces of ordinary edges; those towards which pressures do not fall, beyond which gaps do not rise, and
-    both; elements amid the contact that are undecided, and single ones: as symmetric ones come in and out
-    together. Then straight edges, squared, what uneven faces are of them, and what they are of narrow
-    strips; and all faces towards which pressures do not fall, squared, as they are of one rim.
+    Ordinary faces; those of rising pressures, of level gaps, of both; undecided and single elements: all as
+    often as symmetric. Then, squared, straight edges, their uneven and narrow shares, and all of one rim.
     """
     dA, together = result.grid.element_area, result.symmetry_multiplicity
     area = result.numbers["contact_area"]
@@ -56,10 +54,7 @@ def area_scatter(result: GridFeatures) -> float:
 
 
 def straight_scatter(result: GridFeatures) -> float:
-    """Return the standard deviation of the area by straight edges along the grid (m^2).
-
-    Symmetric ones come in and out together.
-    """
+    """Return the deviation of the area by straight edges (m^2); symmetric ones count together."""
     squares, together = result.straight.squares, min(result.symmetry_multiplicity, result.straight.runs)
     return STRAIGHT_SCATTER * math.sqrt(squares * max(together, 1)) * result.grid.element_area
 
@@ -70,21 +65,14 @@ def straight_share(result: GridFeatures) -> float:
 
 
 def edge_scatter(results: Sequence[GridFeatures]) -> Array:
-    """Return each grid's edge fraction to the power 3/2, the order at which an area's scatter falls.
-
-    On a disc that is about the standard deviation of the area over the area; that of straight edges is added.
-    """
+    """Return each grid's edge fraction to the power 3/2, with the share of straight edges in squares."""
     along = [straight_share(result) for result in results]
     around = np.array([min(1.0, result.edge_fraction) for result in results]) ** DEFAULT_ORDER
     return np.hypot(around, along)
 
 
 def gap_scatter(result: GridFeatures) -> float:
-    """Return the unit of the mean gap's scatter (m): its share goes with the edge over the gap's area.
-
-    As that of an area does with the edge over the contact's; more where gaps are single elements or end at
-    straight edges along the grid.
-    """
+    """Return the unit of the mean gap's scatter (m): its share goes with the edge over the gap's area."""
     area = result.grid.nominal_area - result.numbers["contact_area"]
     if not (area > 0 and result.edge > 0):
         return 0.0
@@ -95,8 +83,7 @@ def gap_scatter(result: GridFeatures) -> float:
 
 
 def plastic_sizes(fine: GridFeatures) -> Array:
-    """Return sizes of the scatter of the area at the hardness (m^2): a count of its edge elements, its
-    straight edges, and the excess of single elements."""
+    """Return sizes of the plastic area's scatter (m^2): edge, straight edges, single elements' excess."""
     area, dA = fine.numbers.get("plastic_area", 0.0), fine.grid.element_area
     edge = max(fine.plastic_edge, 0.0)
     counted = math.sqrt(edge / EDGE_SHARE * dA * fine.symmetry_multiplicity)
@@ -104,11 +91,11 @@ def plastic_sizes(fine: GridFeatures) -> Array:
     return np.array([counted, along, edge, edge * single_element_share(edge, area) ** 2])
 
 
-def plastic_area(fine: GridFeatures) -> Estimate:
+def plastic_area(fine: GridFeatures) -> Intercept:
     """Return the area at the hardness, to which elements that yield in part add a share of its edge."""
     area, lack = fine.numbers.get("plastic_area", 0.0), PLASTIC_LACK * max(fine.plastic_edge, 0.0)
     deviation = float(np.hypot.reduce(PLASTIC_SCATTER * plastic_sizes(fine)))
-    return Estimate(area + lack, deviation * float(scipy.special.stdtrit(PLASTIC_FREEDOM, 0.975)))
+    return Intercept(area + lack, deviation * float(scipy.special.stdtrit(PLASTIC_FREEDOM, 0.975)))
 
 
 def slope_scatter(results: Sequence[GridFeatures], name: str = "slope_sampling_error") -> Array:

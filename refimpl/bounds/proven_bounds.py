@@ -63,7 +63,7 @@ from refimpl.bounds.energy_norm import EnergyNorm
 from refimpl.grid import Array, Mask
 from refimpl.model.certificate import approach_from
 from refimpl.model.forces import resultants
-from refimpl.model.problem import Problem, no_elements
+from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 
 
@@ -101,11 +101,7 @@ NO_BOUND_PERIODIC = "a periodic scene's approach does not bound its mean pressur
 
 
 def proven_bounds(problem: Problem, pressure: Array, traction: Array, slopes: Slopes) -> Bounds:
-    """Return bounds for any pressure and traction (Pa) of the problem's shape, at these slopes.
-
-    Costs some tens of products with ``a``. Where nothing can be proven all are infinite, and ``unproven``
-    says why.
-    """
+    """Return bounds for any pressure and traction (Pa) at these slopes; infinite where none is proven."""
     if problem.terms.slope_correction:
         return _none(problem, NO_BOUND_CORRECTED)
     yields = bool(pressure.max() >= problem.cap)
@@ -294,8 +290,7 @@ def _translated(frozen: _Frozen, x: float, approach: float) -> Bounds:
 
 
 def _shear_row(frozen: _Frozen) -> float:
-    """Return the 2-norm of a row of ``beta c`` from above: an element in each corner meets every offset
-    (m/Pa)."""
+    """Bound the 2-norm of a row of ``beta c`` (m/Pa): elements in the corners meet every offset."""
     if not frozen.coupled:
         return 0.0
     rows = []
@@ -318,7 +313,7 @@ def _largest_root(quadratic: float, linear: float, constant: float) -> float:
 
 
 def _none(problem: Problem, why: str) -> Bounds:
-    nowhere = no_elements(problem)
+    nowhere = np.zeros(problem.gap.shape, dtype=bool)
     whole = nowhere.size * problem.grid.element_area
     unbounded = (math.inf,) * 8  # numbers from the energy to mu
     return Bounds(*unbounded, nowhere, nowhere, contact_area=(0.0, whole), plastic=nowhere, unproven=why)

@@ -82,7 +82,6 @@ def _solve_problem(
 
 
 def _without_contact(problem: Problem) -> State:
-    """Return the state of surfaces that do not touch at the approach: nothing is loaded."""
     zero = np.zeros(problem.gap.shape)
     slopes = problem.slopes(zero, zero)
     operator = whole_grid_influence(problem.grid, problem.direction, Window(0, 1, 0, 1))
@@ -97,7 +96,6 @@ class _ReportingCounter(Counter):
         self._grid, self._report = grid, report
 
     def add(self, what: str, points: int) -> None:
-        """Count an application, and report the number so far."""
         super().add(what, points)
         self._report(f"{self._grid} elements, {sum(self.tally.values())} transforms")
 

@@ -74,10 +74,7 @@ class Options:
             raise InputError("method", self.method, "dense or fft for a periodic scene")
 
     def _check_plastic(self) -> None:
-        """Take the scene's choice where there is no other; what cannot have a cap is elastic without one.
-
-        Refuse a cap without a hardness, by the paper's scheme, and under a load that no contact can bear.
-        """
+        """Take the scene's choice where there is no other, elastic where no cap can be; refuse the rest."""
         scene, plastic = self.scene, self.requested.plastic
         plastic = scene.plastic if plastic is None else plastic
         hardness = scene.materials.softer_hardness
@@ -103,7 +100,6 @@ class Options:
         require_number("load", scene.load, allowed, at_most=most)
 
     def _refuse_doubtful_maps(self) -> None:
-        """Refuse a map whose slopes say that its unit or pixel is wrong, before its load is."""
         for name in ("lower", "upper"):
             for k, part in enumerate(self.scene.parts(name)):
                 if part.pitch(self.scene.lengths) is None:
@@ -169,11 +165,9 @@ class Options:
         return 1e-8 if self.accuracy is None else tolerance_for(self.accuracy)
 
     def plan(self, discretiser: Discretiser | None = None) -> Plan:
-        """Return the plan; with an accuracy, the terms for all grids.
+        """Return the plan; with an accuracy, the terms for all grids, each checked when its turn comes.
 
-        ``discretiser`` samples the heights for it, and keeps them. Raises `InputError` for a grid to solve on
-        that does not fit into memory: before any heights are sampled if not even the whole grid's arrays do.
-        With an accuracy each grid is checked when its turn comes.
+        Raises `InputError` for a grid that does not fit into memory, if possible before heights are sampled.
         """
         grid = self.solve_grid
         if self.grid is not None:
@@ -190,5 +184,4 @@ class Options:
 
 
 def _by(grid: Grid) -> str:
-    """Return the lengths of a grid, one if it is a square."""
     return " x ".join(f"{length}" for length in dict.fromkeys(grid.lengths))

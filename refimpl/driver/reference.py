@@ -72,8 +72,7 @@ def solve_reference(problem: Problem) -> State:
 
 
 def _with_own_numbers(problem: Problem, state: State, found: SimpleNamespace) -> State:
-    """Return the state with the reference's own N, F, Q, mu, A and approach; the differences are a
-    residual."""
+    """Return the state with the reference's own numbers; their differences are a residual."""
     forces = Forces(found.normal, found.friction, found.transverse)
     terms = float(np.sum(np.abs(found.pressure) + np.abs(found.traction)))
     scale = terms * problem.grid.element_area or 1.0

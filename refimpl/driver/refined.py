@@ -39,11 +39,9 @@ _CONVERGED = (Status.CONVERGED, Status.CYCLED)
 
 
 def refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Progress | None) -> Solution:
-    """Return the finest grid's solution of a refinement, with the uncertainty from all grids and the summed
-    cost.
+    """Return the finest grid's solution of a refinement, with the bars and the cost of all grids.
 
-    When finer grids do not fit into memory, or exceed the largest size, the finest solved is returned as
-    `ACCURACY_NOT_REACHED` with a warning that states the accuracy reached.
+    Where limits end it, the status is `ACCURACY_NOT_REACHED`, with a warning of the accuracy reached.
     """
     quantity = options.target_quantity
     assert options.accuracy is not None
@@ -52,9 +50,11 @@ def refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Pr
         ended = grids.until(grids.features_at)
     except KeyboardInterrupt as interrupt:
         if grids.last is not None:
-            interrupt.args = (_interrupted(grids.last, total_cost(grids.costs)),)
+            line = Notice("interrupted: the finest grid that was finished")
+            interrupt.args = (assemble(grids.last, shortfall=line, cost=total_cost(grids.costs)),)
         raise
-    solved, cost = grids.solved(), total_cost(grids.costs)
+    solved, cost = grids.last, total_cost(grids.costs)
+    assert solved is not None  # the first grids were solved
     if not ended.results[-1].touching:
         return assemble(solved, cost=cost)
     shortfall = None
@@ -63,12 +63,6 @@ def refined(options: Options, plan: Plan, discretiser: Discretiser, progress: Pr
         reached = f"known to {bound:.2g}, not" if math.isfinite(bound) else "not bounded, let alone"
         shortfall = Notice(f"{quantity} is {reached} to {options.accuracy:.2g}: {ended.refusal}")
     return assemble(solved, grids=ended.results, shortfall=shortfall, cost=cost)
-
-
-def _interrupted(solved: Evidence, cost: Cost) -> Solution:
-    """Return the last finished grid's solution of a refinement that was interrupted."""
-    line = Notice("interrupted: the finest grid that was finished")
-    return assemble(solved, shortfall=line, cost=cost)
 
 
 @dataclass(frozen=True)
@@ -124,12 +118,10 @@ class _Refinement:
         self.data = DataShares(cache(self._data_left), finest_by_data(self.scene))
 
     def _data_left(self, M: int) -> float:
-        """Return the share of the contact area that the data leave open on M elements along the longer
-        side."""
+        """Return the share of the area that the data leave open on M elements along the longer side."""
         return data_error(self.scene, self.scene.refined(M))
 
     def until(self, features_at: Callable[[int], GridFeatures]) -> Refinement:
-        """Solve grid after grid by ``features_at`` until the accuracy is reached, or no longer to be."""
         return refine_until(
             features_at,
             self._accuracy,
@@ -151,10 +143,7 @@ class _Refinement:
         return size, refusal or ("" if enough else f"{size} elements a side do not suffice")
 
     def features_at(self, M: int) -> GridFeatures:
-        """Solve on a grid, no coarser than the last.
-
-        Raises `Unfinished` where the solve does not converge and that on a coarser grid did.
-        """
+        """Solve on a grid, no coarser than the last; raise `Unfinished` where only coarser ones converge."""
         start = self.last if self.last is not None and self.last.status in _CONVERGED else None
         guess = None
         if start is not None:
@@ -185,8 +174,3 @@ class _Refinement:
         for name in neglected:
             self.plan = self.plan.restore(self.last.problem, name)
         return self.features_at(longer_side(self.last.features))
-
-    def solved(self) -> Evidence:
-        """Return what was solved last."""
-        assert self.last is not None
-        return self.last

@@ -96,7 +96,6 @@ def solve(
 
 
 def _solved(options: Options, progress: Progress | None) -> Solution:
-    """Return the solution by checked options: on one grid, or on a sequence of them."""
     discretiser, start = Discretiser(options.scene, options.approach), options.start
     plan = options.plan(discretiser)
     if options.accuracy is not None:

@@ -23,11 +23,7 @@ def patch_sizes(contact: Mask, *, periodic: bool = False) -> NDArray[np.intp]:
 
 
 def patch_labels(contact: Mask, *, periodic: bool = False) -> NDArray[np.intp]:
-    """Return the patch of each element, numbered from 1 in the order of the array; 0 without contact.
-
-    >>> patch_labels(np.array([[True, False, True]])).tolist()
-    [[1, 0, 2]]
-    """
+    """Return the patch of each element, numbered from 1 in the order of the array; 0 without contact."""
     labels, count = scipy.ndimage.label(contact, np.ones((3, 3)))
     if periodic:
         pairs = np.concatenate([_across(labels), _across(labels.T)], axis=1)
@@ -61,7 +57,6 @@ def patch_centres(labels: NDArray[np.intp], f: Array, along: Array, length: floa
 
 
 def _across(labels: NDArray[np.integer]) -> NDArray[np.integer]:
-    """Return the pairs of patches in the first and the last row that touch where these meet, shape ``(2,
-    n)``."""
+    """Return the pairs of patches ``(2, n)`` that touch where the first and the last row meet."""
     pairs = np.concatenate([[labels[0], np.roll(labels[-1], k)] for k in (-1, 0, 1)], axis=1)
     return pairs[:, pairs.all(axis=0)]

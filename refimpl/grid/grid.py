@@ -46,11 +46,7 @@ class Grid:
 
     @classmethod
     def square(cls, side: float, M: int, *, periodic: bool = False) -> Grid:
-        """Return ``M x M`` elements on a square of edge ``side`` (m).
-
-        >>> Grid.square(1.0, 4).spacings
-        (0.25, 0.25)
-        """
+        """Return ``M x M`` elements on a square of edge ``side`` (m)."""
         return cls((M, M), (side, side), periodic)
 
     @property
@@ -134,26 +130,19 @@ class Grid:
 
     @property
     def transform_shape(self) -> tuple[int, int]:
-        """Shape of a Fourier transform of this grid's fields: a free grid has an empty margin of its own
-        size."""
+        """Shape of a field's Fourier transform: a free grid has an empty margin of its own size."""
         scale = 1 if self.periodic else 2
         return scale * self.shape[0], scale * self.shape[1]
 
     def transform_shape_near(self, where: Mask) -> tuple[int, int]:
-        """Return the shape of a transform of which only the marked elements are wanted, the sources of most.
-
-        It has an empty margin of their own size.
-        """
+        """Return the shape of a transform with an empty margin of the marked elements' own size."""
         if self.periodic:
             return self.shape
         nx, ny = Window.around(where, margin=0).shape
         return scipy.fft.next_fast_len(self.shape[0] + nx), scipy.fft.next_fast_len(self.shape[1] + ny)
 
     def about_datum(self, heights: Array, weights: Array) -> Array:
-        """Return heights about their mean plane on a periodic grid, about their weighted mean on a free one.
-
-        A free body's datum is at will; a periodic one's displacements have no mean on its mean plane.
-        """
+        """Return heights about their mean plane if periodic, about their weighted mean on a free grid."""
         if self.periodic or not weights.any():
             return heights - float(heights.mean())
         return heights - float(np.sum(weights * heights) / np.sum(weights))

@@ -51,8 +51,7 @@ def _steps(contact: Mask, axis: int, periodic: bool) -> int:
 
 
 def _matched(contact: Mask, image: Mask) -> Mask:
-    """Return an image of a periodic contact, moved to where its rows and its columns match the contact's
-    best."""
+    """Return a periodic contact's image, moved to where rows and columns match the contact best."""
     shifts = []
     for axis in (0, 1):
         counts, found = (scipy.fft.rfft(np.count_nonzero(m, axis=1 - axis)) for m in (contact, image))

@@ -14,11 +14,7 @@ Shape = tuple[int, int]
 
 @dataclass(frozen=True)
 class Window:
-    """Elements ``[i0, i1) x [j0, j1)`` of a grid.
-
-    >>> Window(2, 5, 0, 4).shape
-    (3, 4)
-    """
+    """Elements ``[i0, i1) x [j0, j1)`` of a grid."""
 
     i0: int
     i1: int
@@ -32,10 +28,7 @@ class Window:
 
     @classmethod
     def around(cls, where: NDArray[np.bool_], margin: int) -> Window:
-        """Return the bounding box of the true elements, widened by ``margin`` within the grid.
-
-        Where no element is true it is the whole grid.
-        """
+        """Return the true elements' bounding box, ``margin`` wider; the whole grid where none is true."""
         rows, columns = np.flatnonzero(where.any(axis=1)), np.flatnonzero(where.any(axis=0))
         if not rows.size:
             return cls.full((where.shape[0], where.shape[1]))
@@ -47,10 +40,7 @@ class Window:
         )
 
     def filling(self, shape: Shape) -> Window:
-        """Return the window widened within a grid as far as its convolution costs no more.
-
-        A window of n elements along an axis is padded to the least fast length of ``2 n - 1`` or more.
-        """
+        """Return the window widened within a grid as far as its transform's fast length goes."""
         return Window(*_filled(self.i0, self.i1, shape[0]), *_filled(self.j0, self.j1, shape[1]))
 
     def interior(self, shape: Shape) -> Window:

@@ -131,8 +131,7 @@ class _Body:
         return -along * slopes.tan_x, (cos * ahead - sin * across, sin * ahead + cos * across)
 
     def _surface_fields(self, pressed: Complex, sheared: Complex) -> tuple[Vector, Strains]:
-        """Return the in-plane displacements (m) and strains xx, yy, xy of a half-space's surface under f and
-        r."""
+        """Return in-plane displacements (m) and strains xx, yy, xy of the surface under f and r."""
         E, nu, ik, direction = self.modulus, self.material.nu, self.ik, self.contact.direction
         towards = self.sign * math.cos(direction), self.sign * math.sin(direction)
         over_k = np.sqrt(self.over_square)

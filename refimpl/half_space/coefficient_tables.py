@@ -90,11 +90,7 @@ def shipped_table(layout: Layout) -> dict[str, Array]:
 
 
 def read_table(text: str, layout: Layout) -> dict[str, Array]:
-    """Return the axes and the arrays of a table's JSON text, by name.
-
-    Raises `InputError` for another version, for an axis that is missing, does not rise or is incomplete, and
-    for arrays of another shape.
-    """
+    """Return a table's axes and arrays by name; `InputError` for another version, axis or shape."""
     document: dict[str, Any] = json.loads(text)
     if document.get("version") != layout.version:
         raise InputError(layout.file, document.get("version"), f"version {layout.version}")
@@ -116,12 +112,7 @@ def read_table(text: str, layout: Layout) -> dict[str, Array]:
 def _gridded(
     points: Sequence[Mapping[str, Any]], layout: Layout, wanted: Mapping[str, object]
 ) -> dict[str, Any]:
-    """Return the axes and arrays of the points that count, without places and slopes that only some rows of
-    them have.
-
-    A value of the last axis is dropped where a point is missing; of the other axes, values that the layout
-    does not ask for.
-    """
+    """Return axes and arrays of the points that count, without values that lack points or are not asked."""
     rows = {
         tuple(point[name] for name in layout.axes): point
         for point in points

@@ -91,8 +91,7 @@ def coefficient_error(
 def slope_error(slopes: Slopes, pressure: Array, pair: Pair, *, plane: bool = False) -> SlopeError:
     """Return the error at a contact's rms gradient, weighted by pressure, and at its steepest element.
 
-    In three dimensions by the table of square elements (`influence_error_3d`); by the table of strips where
-    the surfaces are ``plane``, constant along a direction, and for Poisson's ratios below zero.
+    By the table of square elements; by that of strips for ``plane`` surfaces and negative nu.
     """
     loaded = pressure > 0
     squared = slopes.tan_x[loaded] ** 2 + slopes.tan_y[loaded] ** 2
@@ -130,8 +129,7 @@ def _plane_errors(angles: Array, pair: Pair) -> list[float | None]:
 def _errors(
     slopes: Array, wavelength: float, positions: Array, lower: Material, upper: Material | None
 ) -> Array:
-    """Return the worst of both neighbours anywhere: ``|flat - rough| / |flat|``, bodies weighted by ``1 /
-    E``."""
+    """Return the worst ``|flat - rough| / |flat|`` of both neighbours, bodies weighted by ``1 / E``."""
     bodies = [(lower, positions)]
     if upper is not None:  # a crest of one body is a valley of the other
         bodies.append((upper, (positions + 0.5) % 1.0))
@@ -154,8 +152,7 @@ def _rests(tangents: Array, wavelength: float, positions: Array) -> Array:
 
 @lru_cache(maxsize=16)
 def _along_slopes(wavelength: float, positions: tuple[float, ...]) -> scipy.interpolate.BSpline:
-    """Return the table's parts there over the tangent of the slope: cubic splines, harmonics in the
-    position."""
+    """Return the parts there over the slope's tangent: cubic splines, harmonics in the position."""
     crest_to_valley = np.moveaxis(_over_wavenumber()(1 / wavelength), 1, 0)
     # 1 - position changes the neighbours' places: the other half of the turn
     turn = np.concatenate([crest_to_valley, crest_to_valley[-2:0:-1][..., [1, 0, 3, 2]]])
@@ -171,8 +168,7 @@ def _along_slopes(wavelength: float, positions: tuple[float, ...]) -> scipy.inte
 
 
 def _departure(tangents: Array, wavelength: float, positions: Array, nu: float, parts: Array) -> Array:
-    """Return the rough minus flat displacement of both neighbours (``p a / E``), ``(slopes, positions,
-    2)``."""
+    """Return rough minus flat displacement of both neighbours (``p a / E``): (slopes, positions, 2)."""
     tangent, at = tangents[:, None, None], positions[:, None]
     ends = 2 * math.pi * (np.array([-1.0, 1.0]) / wavelength + at)
     climb = tangent * wavelength / (2 * math.pi) * (np.cos(2 * math.pi * at) - np.cos(ends))
@@ -183,8 +179,7 @@ def _departure(tangents: Array, wavelength: float, positions: Array, nu: float, 
 
 
 def _flat(nu: float) -> float:
-    """Return ``u(x) - u(0)`` of a strip on a flat half-plane at the neighbour, ``p a / E`` (Johnson 1985,
-    2.30)."""
+    """Return ``u(x) - u(0)`` at a flat strip's neighbour, ``p a / E`` (Johnson 1985, 2.30)."""
     x = _NEIGHBOUR
     return -2 * (1 - nu**2) / math.pi * ((x + 1) * math.log(x + 1) - (x - 1) * math.log(x - 1))
 

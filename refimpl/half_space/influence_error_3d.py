@@ -35,8 +35,7 @@ class ElementError:
 
 
 def element_error(slope: float, lower: Material, upper: Material | None = None) -> ElementError:
-    """Return the errors of flat influence coefficients on a wave of maximum ``slope`` (rad), up to 30
-    degrees.
+    """Return the errors of flat coefficients on a wave of maximum ``slope`` (rad), up to 30 degrees.
 
     One body alone when ``upper`` is None; in a pair the first-order parts enter as lower minus upper.
     Raises `InputError` for a slope beyond the table and for a negative Poisson's ratio.

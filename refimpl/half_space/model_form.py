@@ -46,10 +46,7 @@ class ModelForm:
 def contact_of(
     problem: Problem, pressure: Array, traction: Array, displacements: tuple[Array, Array]
 ) -> Contact:
-    """Return what the perturbation needs of a solved problem, whatever slope terms it was solved with.
-
-    ``displacements`` : into the (lower, upper) body (m).
-    """
+    """Return what the perturbation needs of a solved problem; ``displacements`` into both bodies (m)."""
     common = problem.mean_surface + 0.5 * (displacements[1] - displacements[0])
     return Contact(
         grid=problem.grid,
@@ -65,11 +62,7 @@ def contact_of(
 
 
 def steepness(problem: Problem, contact: Mask) -> float:
-    """Return twice the mean square gradient of the undeformed surfaces, weighted by their compliances.
-
-    Taken where contact is and around it (everywhere on a periodic domain); ``tan^2`` of a wave's steepest
-    slope.
-    """
+    """Return twice the mean square gradient about the contact, weighted by compliances: a wave's tan^2."""
     grid, pair = problem.grid, problem.pair
     near, wider = (grid.window_around(contact, margin=margin) for margin in (1, 2))
     place = (
@@ -91,10 +84,7 @@ def model_form(
     displacements: tuple[Array, Array],
     approach: float,
 ) -> ModelForm:
-    """Return the stated relative errors of approach and normal force; zero without contact.
-
-    ``approach`` counts from first contact (m), ``displacements`` are into the (lower, upper) body (m).
-    """
+    """Return the stated errors of approach and N; displacements into the bodies (m). Zero without contact."""
     contact = pressure > 0
     if not contact.any():
         return ModelForm(0.0, 0.0)

@@ -112,7 +112,6 @@ def _of_frame(table: Any) -> Cells:
 
 
 def _of_file(path: Path) -> tuple[Cells, str]:
-    """Return the cells of a CSV file, and its decimal mark."""
     require_regular("data", path, MAX_BYTES)
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -139,7 +138,6 @@ def _of_file(path: Path) -> tuple[Cells, str]:
 
 
 def _without_index(cells: Cells) -> Cells:
-    """Return the lines without an unnamed first column of whole numbers from 0 or 1 on."""
     header, counts = cells[0][1], [row[0] for _, row in cells[1:]]
     if header[0] or counts not in ([str(k + first) for k in range(len(counts))] for first in (0, 1)):
         return cells
@@ -149,10 +147,7 @@ def _without_index(cells: Cells) -> Cells:
 
 
 def _refuse_thousands(cells: Cells) -> None:
-    """Raise `InputError` for 1,320 where no comma of the table is surely a decimal one, as of 1,32 or 0,320.
-
-    The same holds for points, but where the table has no comma they are decimal ones.
-    """
+    """Refuse 1,320 where no comma is surely a decimal one; likewise points, where there are commas."""
     numbers = [(name, cell) for name, row in cells for cell in row if _MARKED.fullmatch(cell)]
     commas = [(name, cell) for name, cell in numbers if "," in cell]
     points = [(name, cell) for name, cell in numbers if "." in cell]
@@ -229,8 +224,7 @@ def _refuse_mixed_loads(rows: Sequence[Row]) -> None:
 
 
 def _refuse_swapped(rows: Sequence[Row]) -> None:
-    """Refuse friction that falls with the load, and mu that rises with it: no law with tau and beta has
-    them."""
+    """Refuse friction that falls with the load, and mu that rises with it: no law has them."""
     known = [row for row in rows if row.mu > 3 * row.u_mu]
     if not known:
         return
@@ -244,11 +238,7 @@ def _refuse_swapped(rows: Sequence[Row]) -> None:
 
 
 def check_rows(rows: Sequence[Row], unknowns: int = 2) -> tuple[Row, ...]:
-    """Return the rows; raises `InputError` where the parameters cannot be found from them.
-
-    As many loads, or scenes, as unknowns are required. Rows whose mu or whose loads lie so far apart that N
-    and kN are mixed are refused, and so are all beyond any friction, or all less than their uncertainty.
-    """
+    """Return the rows; `InputError` where they cannot determine the unknowns or their units are mixed."""
     known = all(isinstance(row, Row) for row in rows)
     if not known or len(rows) > MAX_ROWS:
         found = f"{len(rows)} rows" if known else type(rows).__name__

@@ -49,10 +49,7 @@ def trial_responses(
 def propose(
     theta: Array, covariance: Array, trials: Sequence[tuple[float, Response]], relative: float
 ) -> Proposal | None:
-    """Return the pair of trial loads, or the one, with the least variance of tau; None without trials.
-
-    ``relative`` is the relative standard uncertainty of a further measurement; bars of the model add to it.
-    """
+    """Return one or two trial loads with the least variance of tau; ``relative``: u of a further row."""
     proposals = []
     for count in (1, 2):
         for chosen in itertools.combinations(trials, count):

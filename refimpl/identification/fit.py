@@ -102,7 +102,6 @@ def fit_rows(
 
 
 def _check_slopes(responses: Sequence[Response], further: Sequence[str], theta: Array) -> None:
-    """Raise `NotConverged` where mu does not depend on a further parameter at any load."""
     for j, name in enumerate(further, start=BOUNDED):
         if not any(response.slopes[j] for response in responses):
             value = math.exp(theta[j])
@@ -119,8 +118,7 @@ def data_covariance(rows: Sequence[Row], responses: Sequence[Response], between:
 
 
 def _bars(responses: Sequence[Response]) -> dict[str, Array]:
-    """Return the covariances of the model: rows share the factor of the mean excess, all else is each row's
-    own."""
+    """Return the model's covariances: rows share the factor of the mean excess alone."""
     bars, shared, edge = (
         np.array([getattr(r, name) for r in responses]) / COVERAGE
         for name in ("numerical", "shared", "contact_edge")
@@ -137,10 +135,7 @@ def linear_fit(
     away: float,
     passes: int,
 ) -> Fit:
-    """Fit the linear models of all rows by generalised least squares, within the bounds and without.
-
-    One row may be dropped (see above).
-    """
+    """Fit the linear models of all rows within the bounds and without; one row may be dropped."""
     every = np.arange(len(rows))
     found = _linear_fit(rows, responses, between, scattered, every)
     wrong = int(np.argmax(np.abs(found.deleted)))
@@ -195,11 +190,9 @@ def _linear_fit(
 
 
 def _deleted(weights: Array, hat: Array, misfit: Array) -> Array:
-    """Return the residual of each row from the fit to the others, in standard uncertainties (Cook and
-    Weisberg 1982).
+    """Return each row's residual from the fit to the others, over its deviation (Cook, Weisberg 1982).
 
-    Rows are correlated, so it is ``(W e)_i / sqrt((W - W X G)_ii)``, without bounds; 0 for a row that a
-    parameter rests on.
+    That is ``(W e)_i / sqrt((W - W X G)_ii)``; 0 for a row that a parameter rests on.
     """
     own = np.diag(weights - weights @ hat)
     alone = own <= _ALONE * np.diag(weights)
@@ -207,11 +200,7 @@ def _deleted(weights: Array, hat: Array, misfit: Array) -> Array:
 
 
 def _bounded(design: Array, wanted: Array, free: Array, scale: Array) -> Array:
-    """Return the least-squares solution with tau and beta not negative and with the longest step of further
-    parameters.
-
-    All in units of ``scale``; ``free`` is the minimum without bounds.
-    """
+    """Return the least squares within the bounds, in units of ``scale``; ``free`` is without them."""
     low = np.concatenate([np.zeros(BOUNDED), -_LONGEST / scale[BOUNDED:]])
     high = np.concatenate([np.full(BOUNDED, np.inf), _LONGEST / scale[BOUNDED:]])
     if np.all((free >= low) & (free <= high)):
@@ -220,11 +209,7 @@ def _bounded(design: Array, wanted: Array, free: Array, scale: Array) -> Array:
 
 
 def shares(rows: Sequence[Row], fitted: Fit, inputs: Sequence[Mapping[str, float]]) -> dict[str, Array]:
-    """Return the parts of the covariance of all parameters by source.
-
-    measurement, numerical, contact edge, realisations where there are several, and each toleranced input,
-    which all rows share.
-    """
+    """Return the covariance's parts: measurement, bars, realisations, and each input, which rows share."""
     parts = {"measurement": np.diag([row.u_mu**2 for row in rows]), **_bars(fitted.responses)}
     for name in inputs[0] if inputs else ():
         change = np.array([row[name] for row in inputs]) / COVERAGE

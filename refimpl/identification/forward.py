@@ -86,10 +86,7 @@ class Forward:
         self._memory, self._key, self._report = memory, key, report
 
     def respond(self, scene: Scene, theta: Array, tolerances: Mapping[str, float] | None = None) -> Response:
-        """Return the response of a scene at parameters ``(tau, beta, ln p, ...)``.
-
-        Raises `InputError` as `refimpl.solve` does, `NotConverged` where the solve does not converge.
-        """
+        """Return the response at ``(tau, beta, ln p, ...)``; raises as `refimpl.solve`, or `NotConverged`."""
         if self._report is not None:
             self._report(f"solve {self.solves + 1}: {scene.load:.4g} N")
         friction = np.maximum(theta[: len(NAMES)], least_parameters(scene))
@@ -119,8 +116,7 @@ def response_from_dict(stored: Mapping[str, Any]) -> Response:
 
 
 def least_parameters(scene: Scene) -> tuple[float, float]:
-    """Return the least parameters that are solved for (Pa, 1): too small to matter, large enough to
-    differentiate."""
+    """Return the least parameters that are solved for (Pa, 1): they do not matter, and have slopes."""
     return _FLOOR * 1e-4 * scene.materials.reduced_modulus, _FLOOR * 1e-2
 
 
@@ -164,8 +160,7 @@ def _response(
 
 
 def _log_slope(scene: Scene, solution: Solution, name: str) -> float:
-    """Return ``d mu / d ln p`` by two solves: areas, and with them friction, are counted
-    (`grid_sensitivity`)."""
+    """Return ``d mu / d ln p`` by two solves: areas are counted (`grid_sensitivity`)."""
     value = parameters(scene)[name]
     return value * difference_quotients(scene, solution, name, value)[0]["friction_coefficient_corrected"]
 

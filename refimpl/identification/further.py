@@ -18,10 +18,7 @@ _ROUGHNESS = (".rms", ".rms_gradient")
 
 
 def further_parameters(scene: Scene, names: Sequence[str]) -> tuple[str, ...]:
-    """Return the parameters' whole names; "hardness" is the softer body's.
-
-    Raises `InputError` for a name that is none, or stands for two parameters, or stands twice.
-    """
+    """Return the parameters' whole names; `InputError` for none, for two parameters, for repetition."""
     if isinstance(names, str):
         raise InputError("fit", names, "a list of names")
     found = tuple(_whole(scene, name) for name in names)
@@ -31,7 +28,6 @@ def further_parameters(scene: Scene, names: Sequence[str]) -> tuple[str, ...]:
 
 
 def _whole(scene: Scene, name: str) -> str:
-    """Return the name of one parameter of the scene."""
     softest = scene.materials.softer_hardness
     hardnesses = [
         f"{body}.material.hardness"

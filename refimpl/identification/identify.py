@@ -95,7 +95,6 @@ def _result(
     profile: Profile | VaryingProfile,
     further: Sequence[str],
 ) -> Identification:
-    """Return the result of a fit and its covariance by source, without a further solve."""
     covariance = np.asarray(sum(parts.values()))
     values = _values(fitted, profile, further)
     units = np.array([1.0, 1.0, *(values[name].value for name in further)])
@@ -129,8 +128,7 @@ def _predictions(
     profile: Profile | VaryingProfile,
     realisations: int,
 ) -> tuple[Prediction, ...]:
-    """Return the predictions at the loads of all rows, whose responses the fit has, and at further ones
-    (N)."""
+    """Return predictions at the loads of all rows, solved by the fit, and at further ones (N)."""
     theta = result.fitted.theta
     new = [mean_response(draws(forward, replace(scene, load=load), theta, realisations)) for load in loads]
     responses, at = (*result.fitted.responses, *new), (*(row.load for row in rows), *loads)
@@ -142,7 +140,6 @@ def _predictions(
 def _fitted(
     scene: Scene, rows: Sequence[Row], forward: Forward, realisations: int, tolerances: Mapping[str, float]
 ) -> tuple[Fit, dict[str, Array]]:
-    """Return the fit, and the covariance by source."""
     logarithms = [math.log(parameters(scene)[name]) for name in forward.further]
     start, scenes = np.concatenate([_start(scene, rows), logarithms]), [row.of(scene) for row in rows]
     try:
@@ -167,7 +164,6 @@ def _of_row(refused: InputError, rows: Sequence[Row]) -> InputError:
 def _proposal(
     scene: Scene, forward: Forward, result: Identification, parts: Mapping[str, Array], realisations: int
 ) -> Proposal | None:
-    """Return the further loads, measured as well as the present ones in the median."""
     rows, theta = result.rows, result.fitted.theta
     trials = trial_responses(scene, rows, forward, theta, realisations)
     relative = float(np.median([row.u_mu / max(row.mu, row.u_mu) for row in rows]))
@@ -175,7 +171,6 @@ def _proposal(
 
 
 def _values(fitted: Fit, profile: Profile | VaryingProfile, further: Sequence[str]) -> dict[str, Interval]:
-    """Return the values with their intervals; those of further parameters from the logarithms'."""
     found = {}
     for j, name in enumerate(("tau", "beta", *further)):
         ends = float(fitted.theta[j]), *profile.interval(np.eye(len(fitted.theta))[j])
@@ -223,10 +218,9 @@ def _check(
 
 
 def _start(scene: Scene, rows: Sequence[Row]) -> Array:
-    """Return the first guess: the scene's friction, or the least measured mu as beta and hardly any tau.
+    """Return the first guess: the scene's friction, or the least mu as beta and hardly any tau.
 
-    Little friction leaves the contact nearly as it is without: the solve converges, and slopes hold. A tau
-    above the pressures of the smallest load, which nobody knows beforehand, does neither.
+    A tau above the pressures of the smallest load would neither converge nor give slopes.
     """
     found = np.array([parameters(scene)[name] for name in NAMES])
     if found.all():
@@ -243,8 +237,7 @@ def _best_factor(covariance: Array, mean: Array) -> float:
 def _prediction(
     load: float, response: Response, theta: Array, profile: Profile | VaryingProfile
 ) -> Prediction:
-    """Return the interval of mu: parameters by their likelihood, bars and scatter of mu at this load, in
-    squares."""
+    """Return the interval of mu: parameters by their likelihood, bars and scatter added in squares."""
     mu = response.predict(theta)
     slopes = np.array(response.slopes)
     slopes[: len(NAMES)] = np.maximum(slopes[: len(NAMES)], 0.0)

@@ -37,8 +37,7 @@ def notes(result: Identification) -> tuple[str, ...]:
 
 
 def _scale(responses: Sequence[Response]) -> Iterator[str]:
-    """Yield warnings of loads out of the scene's scale. Friction alone shows no unit: A/P of a ball is a
-    power of P."""
+    """Yield warnings of loads out of the scene's scale: A/P of a ball, a power of P, shows no unit."""
     most = max(response.contact_fraction for response in responses)
     if most < _LEAST:
         yield (
@@ -123,10 +122,7 @@ def _law(result: Identification) -> Iterator[str]:
 
 
 def _limits(responses: Sequence[Response]) -> list[str]:
-    """Return the warnings of the solves, one of each kind: texts that differ in their numbers alone are one.
-
-    Where contact of one row is at the hardness, the plasticity index of the others says nothing new.
-    """
+    """Return the solves' warnings, texts that differ in numbers once; no index beside contact at H."""
     kinds = {re.sub(r"[\d.]+", "", text): text for response in responses for text in response.warnings}
     plastic = any(response.plastic for response in responses)
     return [text for text in kinds.values() if not (plastic and text.startswith(Limit.PLASTICITY))]

@@ -46,10 +46,7 @@ def floor(gradient: Array) -> float:
 def interval_ends(
     excess: Callable[[float], float], middle: float, spread: float, least: float
 ) -> tuple[float, float]:
-    """Return where ``excess`` changes its sign below and above ``middle``.
-
-    The low end is ``least`` where that is inside; an end further than `_FARTHEST` is infinite.
-    """
+    """Return where ``excess`` changes sign about ``middle``; infinite beyond `_FARTHEST`, or ``least``."""
     high, low = middle + spread, max(middle - spread, least)
     while excess(high) < 0:
         high += high - middle
@@ -101,8 +98,7 @@ class Profile:
                 yield free, theta, covariance
 
     def _optimum(self) -> Array:
-        """Return the optimum within the bounds: inside, or on one of their faces, the last of which has no
-        bound."""
+        """Return the optimum within the bounds: inside, or on one of their faces."""
         inside = [theta for _, theta, _ in self._faces() if np.all(theta[:BOUNDED] >= 0)]
         return np.asarray(min(inside, key=self._misfit) * self.scale)
 
@@ -127,10 +123,7 @@ class Profile:
         return quantile(self.degrees / share**2)
 
     def interval(self, gradient: Array) -> tuple[float, float]:
-        """Return the 95 % interval of ``gradient theta``.
-
-        Its low end is 0 where the bounds keep the combination from less, and that bound is inside.
-        """
+        """Return the 95 % interval of ``gradient theta``; its low end is 0 where a bound is inside."""
         middle, g = float(gradient @ self.optimum), gradient * self.scale
         spread = math.sqrt(float(g @ np.linalg.inv(self.precision) @ g))
         return interval_ends(lambda value: self.excess(gradient, value), middle, spread, floor(gradient))
@@ -145,5 +138,4 @@ class Profile:
         return any(self.centre[j] < self.quantile(axis) for j, axis in enumerate(self._axes()))
 
     def _axes(self) -> Array:
-        """Return the unit vectors of the bounded parameters."""
         return np.eye(len(self.centre))[:BOUNDED]

@@ -36,7 +36,6 @@ class VaryingProfile:
         self.base = self._at(theta)
 
     def _at(self, theta: Array) -> Profile:
-        """Return the likelihood with the covariance of one point."""
         estimated = self.estimated(theta)
         return Profile(self.centre, self.fixed + estimated, estimated, self.degrees)
 

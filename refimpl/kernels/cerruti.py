@@ -32,9 +32,7 @@ _FLOOR = 1e-150  # length whose square must not underflow; t log(length / t) van
 
 
 def over_x(s: Array, y: Array, dy: float) -> Array:
-    """Return the angle that the element's width dy subtends at x-offset ``s >= 0``: integral of s/rho^2 over
-    y.
-    """
+    """Return the angle that the width dy subtends at ``s >= 0``: the integral of s/rho^2 over y."""
     return np.arctan2(s * dy, s * s + (y - dy / 2) * (y + dy / 2))
 
 
@@ -65,8 +63,7 @@ def _weighted_log(t: Array, x: Array, dx: float) -> Array:
 
 
 def _angle_between_ends(t: Array, x: Array, half: float) -> Array:
-    """Return psi(t): angle between the directions to the two x-ends, seen from ``0 <= x < half``; odd in
-    t."""
+    """Return psi(t), the angle between the x-ends seen from ``0 <= x < half``; odd in t."""
     return np.arctan2(2 * x * t, (half - x) * (half + x) + t * t)
 
 

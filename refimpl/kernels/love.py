@@ -29,8 +29,7 @@ _TINY = float(np.finfo(np.float64).tiny)
 
 
 def strip(centre: Array, t: Array, length: float) -> Array:
-    """Return the integral of 1/rho along a segment, seen from ``t > 0`` off its line, ``centre >= 0`` along
-    it.
+    """Return the integral of 1/rho along a segment, seen from ``t > 0`` off it, ``centre >= 0`` along it.
 
     >>> bool(np.isclose(strip(np.array(0.0), np.array(1.0), 2.0), 2 * np.arcsinh(1.0), rtol=1e-15))
     True
@@ -44,9 +43,7 @@ def strip(centre: Array, t: Array, length: float) -> Array:
 
 
 def weighted_edge(centre: Array, t: Array, length: float) -> Array:
-    """Return ``t * strip`` of an edge at signed distance ``t``, 0 on its line; safe where ``t^2``
-    underflows.
-    """
+    """Return ``t * strip`` at signed distance ``t``, 0 on its line; safe where ``t^2`` underflows."""
     distance = np.abs(t)
     near_end, far_end = centre - length / 2, centre + length / 2
     near_reach = np.maximum(np.hypot(near_end, distance) + np.abs(near_end), _TINY)

@@ -16,8 +16,7 @@ Array = NDArray[np.float64]
 
 
 def normal_integral(x: ArrayLike, y: ArrayLike, dx: float, dy: float) -> Array:
-    """Return the integral of 1/rho over the ``dx`` by ``dy`` rectangle centred at the origin, seen from
-    ``(x, y)``.
+    """Return the integral of 1/rho over the centred ``dx`` by ``dy`` rectangle, seen from ``(x, y)``.
 
     ``x`` and ``y`` broadcast; the result has their common shape and the unit of length. Even in x and in y.
     Relative error at most 1e-13. Raises ``InputError`` unless edges are positive and everything finite.
@@ -33,8 +32,7 @@ def normal_integral(x: ArrayLike, y: ArrayLike, dx: float, dy: float) -> Array:
 
 
 def tangential_integral(x: ArrayLike, y: ArrayLike, dx: float, dy: float) -> Array:
-    """Return the integral of s/rho^2, ``s = x - xi``, over the ``dx`` by ``dy`` rectangle centred at the
-    origin.
+    """Return the integral of s/rho^2, ``s = x - xi``, over the centred ``dx`` by ``dy`` rectangle.
 
     ``x`` and ``y`` broadcast; the result has their common shape and the unit of length. Odd in x, exactly 0
     at x = 0, even in y. Relative error at most 1e-13, close to x = 0 too. Raises ``InputError`` as
@@ -49,9 +47,7 @@ def tangential_integral(x: ArrayLike, y: ArrayLike, dx: float, dy: float) -> Arr
 
 
 def scale(dx: float, dy: float) -> float:
-    """Return the power of two above the larger edge. Raises ``InputError`` unless both are positive and
-    finite.
-    """
+    """Return the power of two above the larger edge; `InputError` unless both are positive and finite."""
     edges: dict[str, Any] = {"dx": dx, "dy": dy}
     for name, edge in edges.items():
         one = edge.item() if isinstance(edge, np.ndarray) and edge.ndim == 0 else edge

@@ -70,9 +70,7 @@ def relative_error_bound(order: int, q: float) -> float:
 
 @cache
 def reach(order: int) -> float:
-    """Return the smallest ``q >= NEAR`` from which ``order`` points stay within ``TRUNCATION``, by
-    bisection.
-    """
+    """Return the least ``q >= NEAR`` from which ``order`` points stay within `TRUNCATION`."""
     low, high = NEAR, 1e9
     if relative_error_bound(order, low) <= TRUNCATION:
         return low
@@ -104,9 +102,7 @@ def shells() -> list[tuple[float, float, int]]:
 def across(
     inner: Integrand, outer: Array, other: Array, edge_outer: float, edge_other: float, order: int
 ) -> Array:
-    """Return the quadrature of ``inner`` over the element's extent about the offsets ``outer``; shapes
-    broadcast.
-    """
+    """Return the quadrature of ``inner`` over the element's extent about ``outer``; shapes broadcast."""
     half = edge_outer / 2
     nodes, weights = rule(order)
     axes = np.broadcast(outer, other).ndim

@@ -26,16 +26,11 @@ _SLAB = 16384  # evaluations: 128 kB per temporary
 
 
 def normal_table(n: int, m: int, dx: float, dy: float | None = None, *, known: Array | None = None) -> Array:
-    """Return ``normal_integral(i dx, j dy, dx, dy)`` for ``i < n``, ``j < m``: shape ``(n, m)``, unit of
-    ``dx``.
+    """Return ``normal_integral(i dx, j dy, dx, dy)`` for ``i < n``, ``j < m``, in the unit of ``dx``.
 
     ``dy = dx`` by default; ``known`` is a smaller table of the same elements, to start from: the result is
     the same to the last bit. Extend evenly to negative offsets. Same accuracy and errors as
     ``normal_integral``.
-
-    >>> table = normal_table(3, 3, 1.0)
-    >>> bool((table == table.T).all())
-    True
     """
     dx, dy, unit = _edges(n, m, dx, dy)
     known = None if known is None else known / unit
@@ -52,14 +47,10 @@ def normal_table(n: int, m: int, dx: float, dy: float | None = None, *, known: A
 def tangential_table(
     n: int, m: int, dx: float, dy: float | None = None, *, known: Array | None = None
 ) -> Array:
-    """Return ``tangential_integral(i dx, j dy, dx, dy)`` for ``i < n``, ``j < m``: shape ``(n, m)``, unit of
-    ``dx``.
+    """Return ``tangential_integral(i dx, j dy, dx, dy)`` for ``i < n``, ``j < m``, in the unit of ``dx``.
 
     ``dy = dx`` by default; ``known`` as for `normal_table`. Extend oddly in x, evenly in y. Same accuracy
     and errors as ``tangential_integral``.
-
-    >>> tangential_table(2, 2, 1.0)[0]
-    array([0., 0.])
     """
     dx, dy, unit = _edges(n, m, dx, dy)
     table = _table(CERRUTI, n, m, dx, dy, None if known is None else known / unit)
@@ -103,11 +94,7 @@ def _symmetric_table(kernel: Kernel, n: int, m: int, edge: float, known: Array |
 
 
 def _begun(kernel: Kernel, n: int, m: int, dx: float, dy: float, known: Array | None) -> tuple[Array, int]:
-    """Return a table of NaN (so that no gap between slabs goes unseen) with its first corner, and that one's
-    size.
-
-    The corner is what is known, or as much as the closed form serves.
-    """
+    """Return a table of NaN with its first corner, known or by the closed form, and that one's size."""
     table = np.full((n, m), np.nan)
     if known is not None and min(known.shape) >= _NEAR_COUNT:
         rows, columns = min(known.shape[0], n), min(known.shape[1], m)
@@ -123,11 +110,7 @@ def _offsets(start: int, stop: int, edge: float) -> Array:
 
 
 def _slabs(n: int, m: int, known: int) -> Iterator[tuple[int, int]]:
-    """Yield ``[start, stop)``, for rows and columns alike: thin near the load, where the order changes fast.
-
-    Where slabs start does not depend on n and m as long as both are larger; those that end within what is
-    ``known`` are passed over.
-    """
+    """Yield ``[start, stop)`` beyond ``known``, thin near the load, where the order changes fast."""
     start = _NEAR_COUNT
     while start < max(n, m):
         evaluations = order_for(2.0 * start) * min(start, n, m)  # per row

@@ -1,4 +1,4 @@
-"""Areal roughness parameters of a measured map: heights, slopes, autocorrelation.
+"""Areal roughness parameters of a measured map: heights, bearing curve, slopes, autocorrelation.
 
 ``z[i, j]`` (m) is a levelled map, missing points NaN; ``pixel`` its spacings (m). Everything is a mean over
 the points, or the pairs of points, that were measured. Names as in ISO 25178-2.
@@ -21,6 +21,8 @@ Pixel = tuple[float, float]
 SLOPES = 1e-4, 10.0  # rms slopes of machined, polished and worn surfaces lie between; um for m is 1e6
 ISOTROPIC = 1.1  # ratio of correlation lengths up to which a map counts as isotropic, or by chance:
 BY_CHANCE = 3.0  # times the correlation length over the root of the area: two of the ratio's deviations
+CLASSES = 10_000  # of the material ratio curve (bearing curve)
+CORE = 0.4  # material ratio of the core's secant
 DIRECTIONS = 180  # directions of the half-circle in which the autocorrelation is followed
 
 
@@ -35,8 +37,7 @@ def height_parameters(z: Array) -> dict[str, float]:
 
 
 def developed_area(z: Array, pixel: Pixel) -> float:
-    """Return Sdr: surface over its projection, less one; the mean of both ways to cut a cell into
-    triangles."""
+    """Return Sdr: surface over projection, less one; the mean of both ways to cut cells in triangles."""
     along, across = np.diff(z, axis=0) / pixel[0], np.diff(z, axis=1) / pixel[1]
     ends = slice(1, None), slice(None, -1)
     corners = [np.hypot(along[:, j], across[i]) for i in ends for j in ends]
@@ -51,8 +52,7 @@ def mean_square_slopes(z: Array, pixel: Pixel) -> Pixel:
 
 
 def implausible_slope(z: Array, pixel: Pixel) -> tuple[str, ...]:
-    """Return a note on an rms slope that a wrong unit of heights or pixel would make, of a map that is not
-    flat."""
+    """Return a note on an rms slope that a wrong unit of heights or pixel would make."""
     slope = math.sqrt(sum(mean_square_slopes(z, pixel)))
     if slope == 0 or not math.isfinite(slope) or SLOPES[0] <= slope <= SLOPES[1]:
         return ()
@@ -60,6 +60,29 @@ def implausible_slope(z: Array, pixel: Pixel) -> tuple[str, ...]:
     return (
         f"rms slope {slope:.2g}, beyond {SLOPES[0]:g} to {SLOPES[1]:g}: is the pixel {shown}, is unit right?",
     )
+
+
+def material_ratio(z: Array, classes: int = CLASSES) -> tuple[Array, Array]:
+    """Return material ratios 0 to 1, and the heights (m, from the mean) that those shares reach."""
+    ratio = np.linspace(0.0, 1.0, classes + 1)
+    return ratio, np.nanquantile(z, 1.0 - ratio) - np.nanmean(z)
+
+
+def core_parameters(z: Array) -> dict[str, float]:
+    """Return Sk, Spk, Svk (m) by the line over the flattest 40 % of the curve (ISO 25178-2)."""
+    ratio, height = material_ratio(z)
+    width = round(CORE * CLASSES)
+    first = int(np.argmin(height[:-width] - height[width:]))
+    core = slice(first, first + width + 1)
+    fall, top = np.polyfit(ratio[core], height[core], 1)
+    peaks, dales = height - top, top + fall - height
+    return {"Sk": float(-fall), "Spk": _reduced(peaks), "Svk": _reduced(dales)}
+
+
+def _reduced(beyond: Array) -> float:
+    """Return the height of the triangle whose base and area are those beyond the core."""
+    share = float(np.mean(beyond > 0))
+    return 2.0 * float(np.maximum(beyond, 0.0).mean()) / share if share else 0.0
 
 
 def nayak(z: Array, pixel: Pixel) -> float:
@@ -117,11 +140,7 @@ class Autocorrelation:
         return x, y
 
     def distances(self, level: float) -> Array:
-        """Return the distance (m) at which the autocorrelation first falls to ``level``, in each of
-        DIRECTIONS.
-
-        Direction k is at k pi / DIRECTIONS to x. NaN where it does not fall so far within the lags.
-        """
+        """Return distances (m) of the first fall to ``level`` at k pi / DIRECTIONS to x; NaN for none."""
         angle = np.arange(DIRECTIONS) * math.pi / DIRECTIONS
         reach = min(n // 2 * edge for n, edge in zip(self.values.shape, self.pixel, strict=True))
         r = np.arange(0.0, reach, min(self.pixel) / 2.0)
@@ -141,11 +160,9 @@ class Autocorrelation:
         return np.where(below.any(axis=1) & known, found, np.nan)
 
     def ellipse(self, above: float = 0.4) -> tuple[float, float, float]:
-        """Return the half-axes (m) at which ``exp(-r^2)`` falls to 1/e, and the angle (rad) of the longer one
-        to x.
+        """Return half-axes (m) at which ``exp(-r^2)`` is 1/e, and the longer one's angle to x (rad).
 
-        ``-ln`` of the autocorrelation is fitted by a quadratic form at the lags around zero at which the
-        autocorrelation exceeds ``above``, with its square as weights.
+        ``-ln`` of the values around zero ``above`` a level is fitted by a quadratic form, squares as weights.
         """
         from scipy.ndimage import label
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, unreadable
 from refimpl.grid import Array
 from refimpl.measured.reading import MAX_POINTS, Overrides
 
@@ -19,32 +19,27 @@ NAMES_SHOWN, NAME_SHOWN = 20, 40  # channels in a message, and characters of eac
 
 
 def choose(path: Path, form: str, reader: Any, given: Overrides) -> tuple[int, Any]:
-    """Return the channel of the given name or number, by default the first map of heights from the library's
-    own.
-
-    Of several arrays it is the only one that is named as heights are. Raises InputError with all there are.
-    """
+    """Return the channel of a name or number, by default the first map of heights. Raises `InputError`."""
     channels = list(reader.channels)
     names = [str(c.name) for c in channels]
     maps = [] if given.channel is not None else _maps(channels, reader, form in ARRAYS)
     if given.channel is None and not maps and len(names) != 1:
-        raise InputError("path", str(path), f"a map of heights (found: {_listed(names) or 'no channel'})")
+        raise unreadable(path, f"a map of heights (found: {_listed(names) or 'no channel'})")
     sure = maps and (form not in ARRAYS or len(maps) == 1)
     index = maps[0] if sure else chosen(path, names, given.channel)
     channel = channels[index]
     if channel.dim != 2 or not channel.is_uniform:
         what = "a line scan" if channel.dim == 1 else "no regular map"
-        raise InputError("path", str(path), f"a map of heights (channel {names[index]!r} is {what})")
+        raise unreadable(path, f"a map of heights (channel {names[index]!r} is {what})")
     if not _is_height(channel):
         raise InputError("channel", given.channel, f"a channel of heights in {path.name}: {_listed(names)}")
     if math.prod(channel.nb_grid_pts) > MAX_POINTS:
-        raise InputError("path", str(path), f"heights on a grid of at most {MAX_POINTS} points")
+        raise unreadable(path, f"heights on a grid of at most {MAX_POINTS} points")
     return index, channel
 
 
 def chosen(path: Path, names: list[str], channel: str | int | None) -> int:
-    """Return the index of the channel of a name or number; None: the only one. Raises InputError with all
-    there are."""
+    """Return the index of the channel of a name or number; None: the only one. Raises `InputError`."""
     if channel is None and len(names) != 1:
         raise InputError("channel", None, f"the one that is heights in {path.name}: {_listed(names)}")
     if isinstance(channel, str):
@@ -64,8 +59,7 @@ def _listed(names: list[str]) -> str:
 
 
 def _maps(channels: list[Any], reader: Any, arrays: bool) -> list[int]:
-    """Return the maps of heights, from the library's own on; of several arrays those that are named as
-    heights are."""
+    """Return the maps of heights, the library's own first; of several arrays those named as heights."""
     default = reader._default_channel_index
     order = [default, *range(len(channels))] if default < len(channels) else range(len(channels))
     maps = [k for k in dict.fromkeys(order) if _is_height(channels[k])]
@@ -102,8 +96,7 @@ def topography(reader: Any, index: int) -> Any:
 
 
 def with_coordinates(reader: Any, channel: Any) -> Array | None:
-    """Return the points x, y, z of an array Z beside X and Y of its shape, a row or a column of it, as of a
-    meshgrid."""
+    """Return the points x, y, z of an array Z beside X and Y that go with it, as of a meshgrid."""
     indices = {str(c.name).casefold(): k for k, c in enumerate(reader.channels)}
     if str(channel.name).casefold() != "z" or not {"x", "y"} <= set(indices):
         return None

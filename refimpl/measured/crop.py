@@ -78,8 +78,7 @@ class Crop:
         return self.reading.heights[self.points].size
 
     def filled(self, form: Form) -> tuple[Array, tuple[slice, slice]]:
-        """Return the window's points and what a spline remembers around them, less ``form`` (over pixel
-        positions), gaps filled; and where these begin."""
+        """Return points in and around the window less ``form``, gaps filled; and where they begin."""
         i, j = (slice(max(s.start - MEMORY, 0), s.stop + MEMORY) for s in self.points)
         heights = self.reading.heights[i, j]
         x, y = (s.start + np.arange(n, dtype=float) for s, n in zip((i, j), heights.shape, strict=True))

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from refimpl.errors import InputError
+from refimpl.errors import unreadable
 
 _GROUPED = r"[-+]?[1-9]\d{0,2}[.,]\d{3}"
 _THOUSANDS, _ROW = re.compile(_GROUPED), re.compile(rf"(?:{_GROUPED}[\s;]+)*{_GROUPED}[\s;]*")
@@ -19,22 +19,18 @@ _TIGHT = re.compile(r"\d,\d")
 def refuse_ambiguous(
     path: Path, rows: Callable[[], Iterator[str]], separator: str | None, sample: list[str]
 ) -> None:
-    """Raise InputError where marks within numbers may be decimal or of thousands, or separate them.
-
-    They may where all marked numbers of the table look like 1.320 and some mark is a comma, or 998 stands in
-    the same column.
-    """
+    """Raise `InputError` where marks within numbers may be decimal, of thousands, or separators."""
     if separator == ",":
         found = _grouped((row.replace(",", ";") for row in rows()), ";")
     else:
         found = _grouped(rows(), separator)
     if found:
-        raise InputError("path", str(path), f"decimal points (is {found!r} a thousand times as much?)")
+        raise unreadable(path, f"decimal points (is {found!r} a thousand times as much?)")
     if separator == "," and not any("." in row for row in sample):
         zeros = any(len(cell) > 1 and cell[0] == "0" for row in sample for cell in row.split(","))
         if zeros or (any(", " in row for row in sample) and any(map(_TIGHT.search, sample))):
             said = f"are the commas in {sample[0][:40]!r} separators or decimal marks?"
-            raise InputError("path", str(path), f"decimal points, or semicolons between entries ({said})")
+            raise unreadable(path, f"decimal points, or semicolons between entries ({said})")
 
 
 def _grouped(rows: Iterator[str], separator: str | None) -> str:

@@ -89,10 +89,7 @@ Form = Polynomial | Curved
 
 
 def _cap(tilted: Array, squared: Array, slope: float, curvature: float) -> Array:
-    """Return the height w of a sphere (circle) of that curvature k through the origin, of that slope there.
-
-    From ``k (r^2 + w^2) = 2 (w - g.x) / s``, s = sqrt(1 + g^2); the plane g.x where k = 0.
-    """
+    """Return a sphere's height w: ``k (r^2 + w^2) = 2 (w - g.x) / sqrt(1 + g^2)``; g.x where k = 0."""
     inverse = 1.0 / math.sqrt(1.0 + slope**2)
     known = curvature * squared + 2.0 * inverse * tilted
     return np.asarray(known / (inverse + np.sqrt(np.maximum(inverse**2 - curvature * known, 0.0))))
@@ -117,8 +114,7 @@ def fit_form(x: Array, y: Array, z: Array, level: str | int, pixel: tuple[float,
 
 
 def fit(x: Array, y: Array, z: Array, degree: int) -> Polynomial:
-    """Return the least-squares polynomial of total degree <= ``degree`` of ``z[i, j]`` at ``(x_i, y_j)``; -1:
-    zero.
+    """Return the least-squares polynomial of total degree <= ``degree``, at points (x_i, y_j); -1: zero.
 
     With Q_x, Q_y orthonormal polynomials on the points of each axis, the products Q_x^a Q_y^b are orthonormal
     on the rectangle, so the best fit is the projection on those with a + b <= degree; where points are
@@ -147,8 +143,7 @@ def fit(x: Array, y: Array, z: Array, degree: int) -> Polynomial:
 
 
 def _fit_curved(x: Array, y: Array, z: Array, level: str, pixel: tuple[float, float]) -> Curved:
-    """Return the least-squares form along z over height, slopes, curvature (and axis), from the paraboloid's
-    values."""
+    """Return the least-squares form along z, starting from the paraboloid's values."""
     thin = max(1, math.ceil(math.sqrt(z.size / _FITTED)))
     at_x, at_y, part = x[::thin], y[::thin], z[::thin, ::thin]
     start = fit(at_x, at_y, part, 2)

@@ -13,13 +13,14 @@ import numpy as np
 from refimpl.grid import Array
 from refimpl.measured.areal_parameters import (
     Autocorrelation,
+    core_parameters,
     developed_area,
     height_parameters,
     implausible_slope,
+    material_ratio,
     mean_square_slopes,
     nayak,
 )
-from refimpl.measured.material_ratio import core_parameters, material_ratio
 from refimpl.measured.measured_surface import MeasuredSurface
 from refimpl.measured.missing_points import fill
 from refimpl.measured.roughness_fit import RoughnessFit, fit_roughness
@@ -117,10 +118,7 @@ class Inspection:
 
     @cached_property
     def _psd_slope(self) -> tuple[float, float]:
-        """Slope of the spectrum below the shortest 1/e length, its deviation; NaN where holes decide it.
-
-        Holes decide where the slope without the spectrum of `fill_error` differs by more than its deviation.
-        """
+        """Slope below the shortest 1/e length, its deviation; NaN where `fill_error` moves it by more."""
         away = self.autocorrelation.distances(math.exp(-1.0))
         if not np.isfinite(away).any():
             return math.nan, math.nan
@@ -183,7 +181,6 @@ class Inspection:
 
 
 def _listed(values: Any) -> Any:
-    """Return the arrays as lists."""
     if isinstance(values, dict):
         return {key: _listed(value) for key, value in values.items()}
     return values.tolist() if isinstance(values, np.ndarray) else values

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, unreadable
 from refimpl.measured.channels import (
     ARRAYS,
     choose,
@@ -54,9 +54,9 @@ def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
         except Exception as error:  # other people's parsers raise anything; the next format may fit
             failures.append(f"{name}: {first_line(error)}")
     if kind := kind_of(path, head):
-        raise InputError("path", str(path), kind)
+        raise unreadable(path, kind)
     likely = failures[0] if failures else f"none of SurfaceTopography {library.__version__}'s formats fits"
-    raise InputError("path", str(path), f"a file that can be read ({likely})")
+    raise unreadable(path, f"a file that can be read ({likely})")
 
 
 def claimed_by_magic(path: Path, head: bytes) -> bool:
@@ -70,8 +70,7 @@ def claimed_by_magic(path: Path, head: bytes) -> bool:
 
 
 def _formats(library: ModuleType, path: Path, head: bytes) -> list[str]:
-    """Return the formats to try: those whose mark the first bytes are, then those of the suffix; if there is
-    none, all that the bytes allow but those without a mark, which take any bytes."""
+    """Return the formats of the mark, then of the suffix; else all that do not take any bytes."""
     match, suffix = library.IO.MagicMatch, path.suffix.lower()[1:]
     marked, own, others = [], [], []
     for reader in library.IO.readers:
@@ -116,11 +115,7 @@ def _quietly() -> Iterator[list[warnings.WarningMessage]]:
 def _record(
     path: Path, form: str, found: Any, sized: bool, given: Overrides, said: list[warnings.WarningMessage]
 ) -> RawHeights:
-    """Return the library's map as it lies here: its heights (m; missing: NaN), pixel, unit, and the library's
-    words.
-
-    ``sized``: the file states its size.
-    """
+    """Return the library's map: heights (m), pixel, unit, words; ``sized``: the file states its size."""
     heights = checked(path, np.ma.filled(np.ma.asarray(found.heights(), dtype=np.float64), np.nan))
     metre, pixel = None, None
     if found.unit is not None:
@@ -147,8 +142,7 @@ def _record(
 
 
 def _of_container(library: ModuleType, path: Path, given: Overrides) -> RawHeights:
-    """Return a measurement of a container of contact.engineering, scaled and detrended as its metadata
-    say."""
+    """Return a measurement of a contact.engineering container, scaled and detrended as it says."""
     from SurfaceTopography.Container.IO import CEReader
 
     with _quietly() as said:
@@ -158,11 +152,11 @@ def _of_container(library: ModuleType, path: Path, given: Overrides) -> RawHeigh
         k, j, member = members[chosen(path, [m.name for *_, m in members], given.channel)]
         found = reader.container(k)[j]
         if found.dim != 2 or not found.is_uniform:
-            raise InputError("path", str(path), f"a map of heights ({member.name!r} is a line scan)")
+            raise unreadable(path, f"a map of heights ({member.name!r} is a line scan)")
         stream = member.open
         form = library.IO.detect_format(stream)
         if form == "asc" and stream().read(len(WYKO)) in (WYKO, WYKO.encode()):
-            raise InputError("path", str(path), f"{member.name!r} unpacked: Wyko's text is read on its own")
+            raise unreadable(path, f"{member.name!r} unpacked: Wyko's text is read on its own")
         reading = _record(path, form, found, True, given, said)
     names = tuple(m.name for *_, m in members)
     prepared = found.info.get("detrend_mode") or "none"
@@ -180,7 +174,7 @@ def library_for(path: Path) -> ModuleType:
         allowed = (
             'a plain .npy or .csv, or the package that reads it (pip install ".[instrument]" in a checkout)'
         )
-        raise InputError("path", str(path), allowed) from error
+        raise unreadable(path, allowed) from error
     logging.getLogger("SurfaceTopography").addHandler(logging.NullHandler())  # nothing on stderr
     module: ModuleType = SurfaceTopography
     return module

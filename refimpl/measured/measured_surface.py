@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from refimpl.errors import InputError, require_one_of, size_text
+from refimpl.errors import InputError, require_number, require_one_of, require_size, size_text
 from refimpl.grid import Array, Grid
 from refimpl.measured.areal_parameters import implausible_slope
 from refimpl.measured.crop import ROUNDING, Crop, extent
@@ -23,7 +23,7 @@ from refimpl.measured.standing_out import standing_out
 from refimpl.measured.untrusted import read_untrusted, refuse_huge
 from refimpl.surfaces.bicubic import MEMORY, resample, resample_periodic
 from refimpl.surfaces.from_table import KINDS
-from refimpl.surfaces.surface import Surface, finite, pixel_edges, positive
+from refimpl.surfaces.surface import Surface, pixel_edges
 
 _ALLOWED_FRACTION = "a fraction, 0 <= max_missing < 1"
 
@@ -91,7 +91,7 @@ class MeasuredSurface(Surface):
                 raise InputError(name, getattr(self, name), "true or false")
         if self.level is None:
             object.__setattr__(self, "level", "mean" if self.repeats else "plane")
-        positive("height_scale", self.height_scale, "a positive factor on heights (z calibration)")
+        require_size("height_scale", self.height_scale, "a positive factor on heights (z calibration)")
         check_level(self.level, self.repeats)
         check_preparation(self.channel, self.outliers, self.scan_lines, self.low_pass, self.high_pass)
         check_orientation(self.mirror, self.rotate_deg, self.turn_over)
@@ -99,8 +99,7 @@ class MeasuredSurface(Surface):
         if self.centre is not None:
             object.__setattr__(self, "centre", checked_centre(self.centre))
         require_one_of("missing", self.missing, ("fill", "refuse"))
-        if not 0 <= finite("max_missing", self.max_missing, _ALLOWED_FRACTION) < 1:
-            raise InputError("max_missing", self.max_missing, _ALLOWED_FRACTION)
+        require_number("max_missing", self.max_missing, _ALLOWED_FRACTION, at_least=0, below=1)
 
     @property
     def _file(self) -> Path:
@@ -126,7 +125,6 @@ class MeasuredSurface(Surface):
 
     @cached_property
     def _oriented(self) -> Oriented:
-        """The file's heights as they lie on the body."""
         return oriented(
             replace(self.prepared, heights=self.height_scale * self.prepared.heights),
             replica=self.replica,
@@ -179,15 +177,13 @@ class MeasuredSurface(Surface):
         return {}
 
     def _last(self, name: str, key: object, compute: Callable[[], Any]) -> Any:
-        """Return the last result of that name where its key is the same: a solve, its bars and notes ask in
-        turn."""
+        """Return the last result of that name where its key is the same."""
         known = self._results.get(name)
         if known is None or known[0] != key:
             self._results[name] = known = key, compute()
         return known[1]
 
     def _repeated(self, grid: Grid, offset: tuple[float, float]) -> Array:
-        """Return the heights of a map that repeats with its own area."""
         reading, centre = self._oriented.reading, self._oriented.centre
         times = [length / period for length, period in zip(grid.lengths, reading.area, strict=True)]
         if grid.periodic and any(abs(n - max(round(n), 1)) > ROUNDING * n for n in times):
@@ -263,8 +259,7 @@ class MeasuredSurface(Surface):
         return self._central(grid.lengths)[2], self._oriented.reading.pixel
 
     def notes(self, grid: Grid) -> tuple[str, ...]:
-        """Return the notes on reading and preparation, the form subtracted, filled points and doubtful
-        sizes."""
+        """Return the notes on preparation, the form subtracted, filled points and doubtful sizes."""
         name, window = self._file.name, self._crop(grid.lengths)
         z, form, rest = self._central(grid.lengths)
         pixel = self._oriented.reading.pixel

@@ -26,8 +26,7 @@ _Index = tuple[NDArray[np.intp], NDArray[np.intp]]
 
 
 def fill(heights: Array, pixel: tuple[float, float]) -> Array:
-    """Return ``heights`` with its NaN replaced by the solution of the five-point Laplace equation between the
-    rest.
+    """Return ``heights`` with NaN replaced by the solution of the five-point Laplace equation.
 
     A border point lacks the neighbour outside (no slope across the border). Every filled height lies between
     the lowest and the highest around its gap. One point must be there at least; ``pixel``: the two spacings.
@@ -62,8 +61,7 @@ def fill(heights: Array, pixel: tuple[float, float]) -> Array:
 def _equations(
     heights: Array, hole: NDArray[np.bool_], pixel: tuple[float, float]
 ) -> tuple[scipy.sparse.csr_array, Array]:
-    """Return the Laplace operator on the points of a hole, in their order, and what their known neighbours
-    add."""
+    """Return the Laplace operator on the points of a hole, and what their known neighbours add."""
     unknown = np.empty(heights.shape, dtype=np.intp)
     unknown[hole] = n = np.arange(np.count_nonzero(hole))
     diagonal, right = np.zeros(len(n)), np.zeros(len(n))
@@ -82,8 +80,7 @@ def _equations(
 
 
 def _neighbours(missing: NDArray[np.bool_], axis: int, step: int) -> tuple[_Index, _Index]:
-    """Return the indices of the missing points that have a neighbour on that side, and of those
-    neighbours."""
+    """Return the missing points that have a neighbour on that side, and those neighbours."""
     i, j = np.nonzero(missing)
     ni, nj = (i + step, j) if axis == 0 else (i, j + step)
     inside = (ni >= 0) & (ni < missing.shape[0]) & (nj >= 0) & (nj < missing.shape[1])
@@ -112,8 +109,7 @@ class _Level(NamedTuple):
 
 
 def _levels(operator: scipy.sparse.csr_array, places: NDArray[np.intp]) -> list[_Level]:
-    """Return the Galerkin operators of aggregates of 2 x 2 points, down to a few points; ``places``: (i, j)
-    of each."""
+    """Return Galerkin operators of aggregates of 2 x 2 points; ``places``: (i, j) of each."""
     levels = []
     while True:
         places, aggregate = np.unique(places // 2, axis=0, return_inverse=True)

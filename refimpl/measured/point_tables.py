@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from refimpl.errors import InputError, size_text
+from refimpl.errors import InputError, size_text, unreadable
 from refimpl.grid import Array
 from refimpl.measured.reading import MAX_POINTS, UNITS, Overrides, RawHeights, checked
 
@@ -17,10 +17,9 @@ _UNIT = re.compile(rf"(?<!\w)({'|'.join(UNITS)})(?!\w)")
 
 
 def on_grid(path: Path, points: Array) -> tuple[Array, tuple[float, float]]:
-    """Return the heights ``[i, j]`` of points ``(x, y, z)`` and the pitch of their grid; absent ones are NaN.
+    """Return heights ``[i, j]`` of points (x, y, z) and their median pitch; absent ones are NaN.
 
-    The pitch is the median distance between neighbouring distinct coordinates. Raises InputError for a line
-    scan, for points more than a tenth of the pitch off the grid and for two points in one place.
+    Raises `InputError` for a line scan, points a tenth of the pitch off the grid, two in one place.
     """
     x, y, z = points[np.isfinite(points[:, :2]).all(axis=1)].T
     indices, pitches = [], []
@@ -32,12 +31,12 @@ def on_grid(path: Path, points: Array) -> tuple[Array, tuple[float, float]]:
     shape = int(i.max()) + 1, int(j.max()) + 1
     if shape[0] * shape[1] > 25 * len(z) + 1000:
         found = f"{len(z)} points would fill {shape[0]} x {shape[1]} places"
-        raise InputError("path", str(path), f"points x, y, z on a regular grid ({found})")
+        raise unreadable(path, f"points x, y, z on a regular grid ({found})")
     heights = np.full(shape, np.nan)
     heights[i, j] = z
     twice = len(z) - len(np.unique(i * shape[1] + j))
     if twice:
-        raise InputError("path", str(path), f"one height a point ({twice} points are given twice)")
+        raise unreadable(path, f"one height a point ({twice} points are given twice)")
     return heights, (pitches[0], pitches[1])
 
 
@@ -47,23 +46,18 @@ def _positions(path: Path, name: str, along: Array) -> tuple[Array, float]:
     steps = np.diff(distinct)
     steps = steps[steps > 1e-6 * span]  # rounding of one coordinate is not a step
     if len(steps) == 0:
-        raise InputError("path", str(path), f"a map (a line scan: all points have one {name})")
+        raise unreadable(path, f"a map (a line scan: all points have one {name})")
     pitch = float(np.median(steps))
     pitch = span / round(span / pitch)
     place = (along - along.min()) / pitch
     off = float(np.abs(place - np.rint(place)).max())
     if off > 0.1:
-        raise InputError(
-            "path", str(path), f"points x, y, z on a regular grid ({off:.2g} of the pitch in {name} off it)"
-        )
+        raise unreadable(path, f"points x, y, z on a regular grid ({off:.2g} of the pitch in {name} off it)")
     return np.rint(place).astype(np.intp), pitch
 
 
 def _check_pitch(path: Path, pitch: tuple[float, float], stated: float, given: Overrides) -> None:
-    """Raise InputError unless a given pixel is the points' pitch (m), or would be it in another unit (m).
-
-    Some instruments write x and y in mm and z in um.
-    """
+    """Raise `InputError` unless a given pixel is the points' pitch (m), or would be in another unit."""
     if given.pixel_size is None:
         return
     ratios = np.divide(given.pixel_size, pitch)
@@ -89,7 +83,7 @@ def points_map(
     _check_pitch(path, pitch, x, given)
     unit, pixel, overridden = given.resolve(path.name, named[-1] if named else own, pitch)
     if heights.size > MAX_POINTS:
-        raise InputError("path", str(path), f"heights on a grid of at most {MAX_POINTS} points")
+        raise unreadable(path, f"heights on a grid of at most {MAX_POINTS} points")
     said = () if named is None else (f"units {', '.join(named)} of x, y, z as the header states them",)
     heights, notes = checked(path, heights * UNITS[unit]), (*notes, *said, *overridden)
     source, orientation = "as points x, y, z", "coordinates as the file states them"

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import scipy
 
-from refimpl.errors import InputError, require_one_of
+from refimpl.errors import InputError, require_one_of, require_size
 from refimpl.grid import Array, Mask
 from refimpl.measured.detrending import fit
 from refimpl.measured.instrument_files import library_for
 from refimpl.measured.missing_points import fill
 from refimpl.measured.reading import RawHeights
-from refimpl.surfaces.surface import positive
 
 NEIGHBOURHOOD = 5  # points an axis
 _RANK = 20  # rank among 25 points: the 80th percentile; four or five of them may be outliers
@@ -31,13 +31,13 @@ def check_preparation(
     if not isinstance(channel, str | int | None) or isinstance(channel, bool):
         raise InputError("channel", channel, "a channel's name or number")
     if outliers is not None:
-        positive("outliers", outliers, "a number of spreads, say 6")
+        require_size("outliers", outliers, "a number of spreads, say 6")
     if scan_lines is not None:
         require_one_of("scan_lines", scan_lines, ("x", "y"))
     wavelengths = {
         name: value for name, value in (("low_pass", low_pass), ("high_pass", high_pass)) if value is not None
     }
-    lengths = [positive(name, value, "a wavelength in m") for name, value in wavelengths.items()]
+    lengths = [require_size(name, value, "a wavelength in m") for name, value in wavelengths.items()]
     if len(lengths) == 2 and lengths[0] >= lengths[1]:
         raise InputError("low_pass", low_pass, f"less than high_pass, {lengths[1]:g} m")
 
@@ -52,15 +52,8 @@ def prepare(
 ) -> RawHeights:
     """Return the map with outliers missing and wavelengths filtered, a note for each step.
 
-    outliers   points further off their neighbours than that many spreads become missing. The distance is the
-               median, over the four lines through a point, of that from the mean of its two neighbours; a
-               spread is the rms of such distances, from their median over the map, or from their 80th
-               percentile over the 5 x 5 points around where that is larger (edges, rougher places)
-    scan_lines the axis, "x" or "y", along which an instrument scanned: each line loses its least-squares
-               slope and, but for the map's mean, its median
-    low_pass   wavelengths (m) below are damped, ``high_pass``: above; by half at that wavelength (Gaussian
-               filter of ISO 16610-61). At the border the weights are normalised (ISO 16610-28), after the
-               plane of the whole map is set aside; missing points are filled for the filter alone.
+    The keys are those of a scene file (`refimpl.scene.key_texts`); filters are those of ISO 16610-61, with
+    weights normalised at the border (ISO 16610-28) after the plane of the whole map is set aside.
     """
     if outliers is not None:
         reading = _without_outliers(reading, outliers, repeats)
@@ -81,35 +74,38 @@ def _without_outliers(reading: RawHeights, times: float, repeats: bool) -> RawHe
 
 
 def outlying(z: Array, known: Mask, times: float, repeats: bool = False) -> tuple[Mask, float]:
-    """Return which points are outliers as `prepare` has them, and the spread (m) over the map.
-
-    ``known`` : points that the file has; the others are filled
-    """
+    """Return which ``known`` points are outliers, and the spread (m) over the map."""
     away = off_neighbours(z, repeats)
     spread = max(MAD_TO_RMS * float(np.median(away[known])), _ROUNDING * float(z[known].std()))
     out = known & (away > times * spread)
     i, j = np.nonzero(out)
-    padded = np.pad(away, NEIGHBOURHOOD // 2, mode="wrap" if repeats else "edge")
-    steps = range(NEIGHBOURHOOD)
-    around = np.partition([padded[i + k, j + m] for k in steps for m in steps], _RANK, axis=0)[_RANK]
+    reach = np.arange(NEIGHBOURHOOD) - NEIGHBOURHOOD // 2
+    mode: Literal["wrap", "clip"] = "wrap" if repeats else "clip"
+    near = [np.ravel_multi_index((i + k, j + m), z.shape, mode=mode) for k in reach for m in reach]
+    around = np.partition(away.take(near), _RANK, axis=0)[_RANK]
     out[i, j] = away[i, j] > times * around / PERCENTILE_TO_RMS
     return out, spread
 
 
 def off_neighbours(z: Array, repeats: bool) -> Array:
-    """Return the distance of each point from its neighbours: the median, over the four lines through it, of
-    that from the mean of the two neighbours on the line. Lines that leave the map count as straight."""
+    """Return the median distance of each point from the means of neighbours on the four lines through it."""
     padded = np.pad(z, 1, mode="wrap") if repeats else np.pad(z, 1, mode="reflect", reflect_type="odd")
     nx, ny = z.shape
     total, low, high = np.zeros_like(z), np.full_like(z, np.inf), np.full_like(z, -np.inf)
     for i, j in ((1, 0), (0, 1), (1, 1), (1, -1)):
         before = padded[1 - i : 1 - i + nx, 1 - j : 1 - j + ny]
         after = padded[1 + i : 1 + i + nx, 1 + j : 1 + j + ny]
-        off = z - (before + after) / 2.0
+        off = before + after
+        off /= 2.0
+        np.subtract(z, off, out=off)
         total += off
         np.minimum(low, off, out=low)
         np.maximum(high, off, out=high)
-    return np.abs(total - low - high) / 2.0
+    total -= low
+    total -= high
+    np.abs(total, out=total)
+    total /= 2.0
+    return total
 
 
 def _aligned(reading: RawHeights, axis: str, repeats: bool) -> RawHeights:
@@ -154,11 +150,7 @@ def _filtered(
 
 
 def gaussian_filter(z: Array, pixel: tuple[float, float], wavelength: float, repeats: bool = False) -> Array:
-    """Return the mean of ``z`` with Gaussian weights, transmission 2^-(wavelength f)^2 at the spatial
-    frequency f.
-
-    Beyond the border there is nothing: the weights inside are scaled to a sum of one. ``repeats``: periodic.
-    """
+    """Return ``z`` by Gaussian weights, transmission 2^-(wavelength f)^2, of sum one at a border."""
     pads = [
         0 if repeats else min(round(REACH * wavelength / edge), n)
         for edge, n in zip(pixel, z.shape, strict=True)

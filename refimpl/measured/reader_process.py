@@ -19,7 +19,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TypeVar
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, unreadable
 from refimpl.operating_system import limit_process
 
 T = TypeVar("T")
@@ -34,10 +34,9 @@ _started: dict[int, subprocess.Popen[bytes]] = {}
 
 
 def read_elsewhere(path: Path, load: Callable[[], T]) -> T:
-    """Return what ``load``, which can be pickled, returns in the reader; raises `InputError` where it does.
+    """Return what ``load``, which can be pickled, returns in the reader.
 
-    So it does where the reader crashes or takes more than its time or memory, which follow from the file's
-    size; the next file gets a new one.
+    Raises `InputError` where it does, where the reader crashes, or takes more than a file of that size may.
     """
     with _LOCK:
         reader = _reader()
@@ -50,7 +49,7 @@ def read_elsewhere(path: Path, load: Callable[[], T]) -> T:
         except (EOFError, OSError, pickle.UnpicklingError):
             status = _end()
             allowed = f"a file that can be read (its reader crashed or took too long: exit status {status})"
-            raise InputError("path", str(path), allowed) from None
+            raise unreadable(path, allowed) from None
         except BaseException:  # an interrupt: the answer would be taken for that to the next file
             _end()
             raise
@@ -61,7 +60,6 @@ def read_elsewhere(path: Path, load: Callable[[], T]) -> T:
 
 
 def _reader() -> subprocess.Popen[bytes]:
-    """Return the living reader, started where there is none."""
     own = os.getpid()
     if own not in _started or _started[own].poll() is not None:
         _started[own] = subprocess.Popen(

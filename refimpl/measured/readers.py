@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from refimpl.errors import InputError, size_text
+from refimpl.errors import InputError, size_text, unreadable
 from refimpl.grid import Array
 from refimpl.measured.file_kinds import kind_of
 from refimpl.measured.instrument_files import claimed_by_magic, library_for, read_as, read_instrument
@@ -49,11 +49,9 @@ def read(
     """Return the heights of one file, x to the right and y up as seen from outside.
 
     ``unit`` of the heights (a key of UNITS) and ``pixel_size`` (m) serve files that state none and override
-    those that do, with a note. ``.npy`` and text without a header are plain tables: row i at x_i, column j at
-    y_j, nan where nothing was measured. Text with a header is an instrument's image: lines along x, the first
-    at the top. Three columns are points x, y, z in ``unit``: another pixel than their pitch is refused, but
-    for x and y in another unit. All else is read by SurfaceTopography.
-    Raises InputError.
+    those that do, with a note. ``.npy`` and text without a header have row i at x_i, column j at y_j; text
+    with a header has an image's lines, from the top; three columns are points. All else is read by
+    SurfaceTopography. Raises `InputError`.
     """
     given = Overrides(unit, pixel_size, channel)
     found = read_or_refuse(path, lambda: _read(path, given))
@@ -76,15 +74,13 @@ def _read(path: Path, given: Overrides) -> RawHeights:
 
 def _check_size(path: Path) -> None:
     if not os.path.isfile(path):  # a name may have any length
-        raise InputError("path", str(path), "an existing file")
+        raise unreadable(path, "an existing file")
     size = path.stat().st_size
     if zipfile.is_zipfile(path):
         with zipfile.ZipFile(path) as archive:
             size = max(size, sum(member.file_size for member in archive.infolist()))
     if not 0 < size <= MAX_BYTES:
-        raise InputError(
-            "path", str(path), f"at least 1 and at most {MAX_BYTES} bytes, unpacked as well (this: {size})"
-        )
+        raise unreadable(path, f"at least 1 and at most {MAX_BYTES} bytes, unpacked as well (this: {size})")
 
 
 def _plain(
@@ -98,15 +94,13 @@ def _plain(
 
 def _text(path: Path, given: Overrides, head: bytes) -> RawHeights:
     if kind := kind_of(path, head):
-        raise InputError("path", str(path), kind)
+        raise unreadable(path, kind)
     table = read_table(path)
     rows, columns = table.rows.shape
     if path.suffix.lower() == ".xyz" and columns not in (2, 3):
-        raise InputError("path", str(path), f"points in two or three columns (found {columns})")
+        raise unreadable(path, f"points in two or three columns (found {columns})")
     if columns < 3:
-        raise InputError(
-            "path", str(path), f"a map (a line scan: {rows} rows of {columns} columns were found)"
-        )
+        raise unreadable(path, f"a map (a line scan: {rows} rows of {columns} columns were found)")
     if columns == POINT and not table.is_sized:
         return points_map(path, table.rows, given, table.header, table.notes)
     if not table.header:
@@ -117,9 +111,7 @@ def _text(path: Path, given: Overrides, head: bytes) -> RawHeights:
         if refused.field == "channel" or table.header[0].startswith(WYKO):
             raise
     if len(table.blocks) > 1:
-        raise InputError(
-            "path", str(path), f"one image, or images with names (blocks of {table.blocks} lines)"
-        )
+        raise unreadable(path, f"one image, or images with names (blocks of {table.blocks} lines)")
     image = checked(path, table.rows).T[:, ::-1]
     reading = _plain(path, np.ascontiguousarray(image), given, "as text with a header", table)
     return replace(reading, orientation=IMAGE)
@@ -136,5 +128,5 @@ def _with_header(path: Path, table: TextTable, given: Overrides) -> RawHeights:
         allowed = (
             f"an image of {' or '.join(map(str, table.blocks))} lines, not {size_text(found.heights.shape)}"
         )
-        raise InputError("path", str(path), allowed)
+        raise unreadable(path, allowed)
     return found

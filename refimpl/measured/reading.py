@@ -9,7 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from refimpl.errors import InputError, printable, require_size, size_text
+from refimpl.errors import InputError, printable, require_size, size_text, unreadable
 from refimpl.grid import Array
 
 T = TypeVar("T")
@@ -82,8 +82,7 @@ class Overrides:
         pixel: tuple[float, float] | None,
         what: str = "does not state them",
     ) -> tuple[str, tuple[float, float], tuple[str, ...]]:
-        """Return the unit, pixel, notes, from what the file states (None: nothing). Raises InputError if one
-        lacks."""
+        """Return unit, pixel and notes, from what the file states (None: nothing). Raises `InputError`."""
         if (self.unit or unit) is None or (self.pixel_size or pixel) is None:
             raise InputError("unit, pixel_size", (self.unit, self.pixel_size), f"both: {name} {what}")
         notes = []
@@ -110,7 +109,7 @@ def read_or_refuse(path: Path, load: Callable[[], T]) -> T:
     except InputError:
         raise
     except Exception as error:  # other people's parsers raise anything
-        raise InputError("path", str(path), f"a file that can be read ({first_line(error)})") from error
+        raise unreadable(path, f"a file that can be read ({first_line(error)})") from error
 
 
 def first_line(error: object) -> str:
@@ -120,8 +119,7 @@ def first_line(error: object) -> str:
 
 
 def checked(path: Path, raw: Array) -> Array:
-    """Return the heights as doubles, missing ones NaN. Raises InputError for what is no map of real
-    numbers."""
+    """Return the heights as doubles, missing ones NaN; `InputError` for no map of real numbers."""
     if raw.ndim != 2 or min(raw.shape) < 4 or raw.size > MAX_POINTS or raw.dtype.kind not in "fiu":
         what = f"{raw.dtype} of shape {raw.shape} in {path.name}"
         allowed = f"a 2-D table of real numbers, at least 4 an axis, at most {MAX_POINTS}"

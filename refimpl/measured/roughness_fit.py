@@ -108,16 +108,14 @@ def fit_roughness(z: Array, pixel: Pixel, kind: str, draws: int = 16) -> Roughne
 
 
 def _gaussian(z: Array, pixel: Pixel) -> tuple[Values, tuple[str, ...]]:
-    """Return the rms height; lengths of Eq. (9) and lay from the autocorrelation's ellipse around lag
-    zero."""
+    """Return the rms height; lengths of Eq. (9) and lay from the autocorrelation's ellipse."""
     lx, ly, lay = _ellipse(z, pixel)
     found = {"rms": float(np.nanstd(z)), "lx": lx, "ly": ly}
     return found | ({"lay": lay} if lx > ly else {}), ()
 
 
 def _ellipse(z: Array, pixel: Pixel) -> Lay:
-    """Return the longer and shorter length of Eq. (9) and the lay (rad); equal lengths where the ratio is
-    chance."""
+    """Return the longer and shorter length of Eq. (9), and the lay (rad)."""
     long, short, lay = Autocorrelation.of(z, pixel).lay()
     return long * math.sqrt(DECAY), short * math.sqrt(DECAY), lay
 
@@ -133,8 +131,7 @@ def _gaussian_psd(values: Values) -> Callable[[Array, Array], Array]:
 
 
 def _self_affine(z: Array, pixel: Pixel) -> tuple[Values, tuple[str, ...]]:
-    """Return the anisotropy and lay from the autocorrelation; Hurst exponent, roll-off by Whittle's
-    likelihood."""
+    """Return anisotropy and lay by the autocorrelation, hurst and roll-off by Whittle's likelihood."""
     long, short, lay = _ellipse(z, pixel)
     g = long / short
     spectrum = Spectrum.of(z, pixel, g, lay if g > 1.0 else 0.0)
@@ -199,8 +196,7 @@ def _estimates(
 ) -> tuple[dict[str, Array], tuple[float, float]]:
     """Return the estimates from drawn maps, by name, and the misfit of ``z`` to their spectra.
 
-    Maps of more than 512 points an axis are drawn with every second, third ... point; where waves would be
-    lost by that, a part of the map is drawn, and the scatter goes down with the root of the area.
+    Maps of more than 512 points an axis are thinned; where that loses waves a part of the map is drawn.
     """
     shape = z.shape
     thin = max(1, math.ceil(max(shape) / _LARGEST))
@@ -229,8 +225,7 @@ def _estimates(
 
 
 def _misfit(own: Spectrum, drawn: Array) -> tuple[float, float]:
-    """Return the rms of ln(C / mean C of the drawn) over the rings that carry the slopes: of the map, of a
-    drawn map."""
+    """Return the rms of ln(C / mean drawn C) over rings that carry slopes: of the map, of drawn ones."""
     power = np.cumsum(own.count * own.q**2 * own.C)
     use = slice(1, max(int(np.searchsorted(power, _CARRIED * power[-1])) + 1, 4))  # the plane is subtracted
     floor = np.finfo(float).tiny

@@ -20,11 +20,7 @@ NORMALISATION = "<h^2> = (2 pi)^-2 int C d^2q over all q of the plane, C average
 
 
 def periodogram(z: Array, pixel: Pixel) -> tuple[Array, Array, Array]:
-    """Return the two-dimensional spectrum (m^4) under Hann's window on both axes, and its wave numbers
-    (rad/m).
-
-    Missing points count as the mean height.
-    """
+    """Return the spectrum (m^4) under Hann's window, missing points at the mean, and q_x, q_y (rad/m)."""
     windows = [np.sin(np.pi * (np.arange(n) + 0.5) / n) ** 2 for n in z.shape]
     known = np.isfinite(z)
     weighted = np.where(known, z - np.nanmean(z), 0.0)
@@ -66,12 +62,7 @@ class Spectrum:
         return cls(totals[1][use] / count[use], totals[0][use] / count[use], count[use])
 
     def slope(self, longest: float) -> tuple[float, float]:
-        """Return the slope d ln C / d ln q below a wavelength (m), its standard deviation by the scatter
-        about it.
-
-        Down to four pixels, or to where the spectrum breaks off. Least squares, each ring by its points; NaN
-        of fewer than six rings.
-        """
+        """Return d ln C / d ln q from a wavelength (m) to four pixels, its deviation; NaN below six rings."""
         shortest = max(4.0 * math.pi / self.q[-1], 1.2 * (self.short_cut() or 0.0)) if len(self.q) else 0.0
         use = (self.q > 2 * np.pi / longest) & (self.q * shortest < 2 * np.pi) & (self.C > 0)
         if np.count_nonzero(use) < 6:
@@ -81,8 +72,7 @@ class Spectrum:
         return float(line[0]), math.sqrt(_OVERLAP * max(float(covariance[0, 0]), 0.0))
 
     def short_cut(self) -> float | None:
-        """Return the wavelength (m) at which the spectrum breaks off, a fall to a tenth within a fifth of q,
-        or None."""
+        """Return the wavelength (m) at which C falls to a tenth within a fifth of q, or None."""
         further = np.interp(1.2 * self.q, self.q, self.C)
         sure = (self.count >= _RING) & (1.2 * self.q <= self.q[-1])
         falls = np.flatnonzero((further < 0.1 * self.C) & sure)
@@ -90,10 +80,7 @@ class Spectrum:
 
 
 def texture_direction(z: Array, pixel: Pixel) -> float:
-    """Return Std (rad): direction of the waves with most power, from x, anticlockwise, in half-degrees.
-
-    Power is averaged over a fan of 6 degrees.
-    """
+    """Return Std (rad): the fan of 6 degrees with most power, from x, anticlockwise."""
     power, qx, qy = periodogram(z, pixel)
     inside = np.hypot(qx[:, None], qy) < math.pi / max(pixel)
     turn = np.arctan2(qy, qx[:, None])[inside] % math.pi
@@ -107,11 +94,7 @@ def texture_direction(z: Array, pixel: Pixel) -> float:
 
 
 def fill_error(filled: Array, missing: NDArray[np.bool_], pixel: Pixel) -> Array:
-    """Return the error (m) of filling such holes: that of holes of the same pattern half a map away, moved
-    back.
-
-    There the filled map is the truth.
-    """
+    """Return the error (m) of filling holes of this pattern half a map away, where the truth is known."""
     half = tuple(n // 2 for n in filled.shape)
     holes = np.roll(missing, half, (0, 1))
     error = fill(np.where(holes, np.nan, filled), pixel) - filled

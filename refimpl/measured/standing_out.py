@@ -13,10 +13,7 @@ _ROUNDING = 1e-9  # share of the rms height
 
 
 def standing_out(z: Array, known: Mask) -> tuple[str, ...]:
-    """Return a note on the points, and one on the lines along each axis, that stand out; empty for none.
-
-    ``known`` : points that the file has; the others are filled
-    """
+    """Return notes on ``known`` points and on lines along each axis that stand out; empty for none."""
     if not known.any():
         return ()
     points, notes = int(np.count_nonzero(outlying(z, known, FAR)[0])), []
@@ -35,10 +32,7 @@ def standing_out(z: Array, known: Mask) -> tuple[str, ...]:
 
 
 def scars(z: Array) -> int:
-    """Return the number of rows that lie above, or below, both of their neighbours by `FAR` spreads.
-
-    A step is the median, over a row, of the distance from the row before; steps' spread is that of all rows.
-    """
+    """Return how many rows lie above, or below, both neighbours by `FAR` spreads of median steps."""
     if len(z) < _LEAST_LINES:
         return 0
     steps = np.median(np.diff(z, axis=0), axis=1)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from refimpl.errors import InputError
+from refimpl.errors import unreadable
 from refimpl.grid import Array
 from refimpl.measured.point_tables import POINT
 
@@ -47,11 +47,7 @@ def word_in_corner(sample: list[list[str]], unknown: list[str]) -> str:
 def without_labels(
     path: Path, rows: Array, sample: list[list[str]], corner: str = ""
 ) -> tuple[Array, list[str]]:
-    """Return the heights without an index row or column; points x, y, z of heights in a frame of even
-    coordinates.
-
-    Raises InputError for other coordinates beside the heights, and for a ``corner`` without them.
-    """
+    """Return heights without index row or column, or points of a frame; `InputError` for other labels."""
     column, titled = rows[:, 0], is_title(sample)
     notes = ["a leading index row was dropped"] if titled else []
     body = sample[1:] if titled else sample
@@ -62,7 +58,7 @@ def without_labels(
         return rows, notes
     if _are_places(rows[:, :2]):
         found = f"{rows.shape[1]} columns, of which the first two are places on a grid"
-        raise InputError("path", str(path), f"points in three columns, x, y, z ({found})")
+        raise unreadable(path, f"points in three columns, x, y, z ({found})")
     x, y = rows[0, 1:], rows[1:, 0]
     even = [_is_even(x) and not _goes_on(x, rows[1, 1:]), _is_even(y) and not _goes_on(y, rows[1:, 1])]
     if all(even) and not titled:
@@ -73,7 +69,7 @@ def without_labels(
     axis = any(_is_axis(*lines) for lines in ((rows[0], rows[1]), (column, rows[:, 1])))
     if cornered or axis or (np.isnan(rows[0, 0]) and any(even)):
         found = f"the first row begins with {sample[0][:4]}, the first column with {rows[:4, 0].tolist()}"
-        raise InputError("path", str(path), f"heights without their coordinates ({found})")
+        raise unreadable(path, f"heights without their coordinates ({found})")
     return rows, notes
 
 

@@ -17,7 +17,8 @@ WYKO = "Wyko ASCII Data File Format"
 _WYKO_BLOCK = re.compile(r"(?!bad\b)([a-z]\w*)\s+\d+\s+\d+\b", re.IGNORECASE)
 WYKO_HEIGHTS = ("RAW_DATA", "OPD", "Raw", "SAMPLE_DATA")  # others are intensities and processed arrays
 
-# The library's words, and those of Gwyddion and of profilometers in German, French and Spanish
+# The library's words, and those of Gwyddion and of profilometers in German, French and Spanish. Version
+# 1.27.1 knows most of Gwyddion's, but only with the unit behind the value and a decimal point.
 _WORDS = {
     "Channel": "channel|kanal|canal",
     "Width": "width|breite|largeur|anchura|ancho",
@@ -58,8 +59,7 @@ def encoding_of(path: Path) -> str:
 
 
 def lines_of(path: Path, encoding: str) -> Iterator[tuple[int, str]]:
-    """Yield the number and text of each line, one at a time: a list takes several times what their numbers
-    do."""
+    """Yield number and text of each line, one at a time: a list takes several times the memory."""
     with path.open(encoding=encoding) as file:
         lines = (
             (number, _spelled(part.strip(" \xa0")))
@@ -79,8 +79,7 @@ def _spelled(line: str) -> str:
 
 
 def _heights(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, str]]:
-    """Yield Wyko's text without the arrays that are no heights: a block's line states its name, type and
-    length."""
+    """Yield Wyko's text without arrays that are no heights: a block's line states name and length."""
     keeps = True
     for number, line in lines:
         if block := _WYKO_BLOCK.match(line):

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from refimpl.errors import InputError
+from refimpl.errors import unreadable
 from refimpl.grid import Array
 from refimpl.measured.decimal_marks import refuse_ambiguous
 from refimpl.measured.point_tables import POINT
@@ -87,7 +87,7 @@ def read_table(path: Path) -> TextTable:
             elif line.strip() or len(layout.cells(line)) == width:  # tabs alone: missing points
                 if layout.splits_row(line):
                     allowed = f"comments that begin a line or follow a row (line {number}: {line[:40]!r})"
-                    raise InputError("path", str(path), allowed)
+                    raise unreadable(path, allowed)
                 count += 1
                 yield number, line.replace(corner, "nan", 1) if corner and count == 1 else line
             else:
@@ -138,14 +138,12 @@ class _Layout:
         return all(map(self.is_number, after.split()[1:])) and len(after.split()) > 1
 
     def ends(self, line: str) -> bool:
-        """Return whether the separator ends the line."""
         return self.separator is not None and line.endswith(self.separator)
 
     def is_number(self, cell: str) -> bool:
         return bool(_NUMBER.fullmatch(cell) or (self.separator != "," and _COMMA_NUMBER.fullmatch(cell)))
 
     def unknown(self, cells: Iterable[str]) -> list[str]:
-        """Return the entries that are neither numbers nor missing."""
         return [c for c in cells if c and c.lower() not in NOT_MEASURED and not self.is_number(c)]
 
     def is_data(self, line: str) -> bool:
@@ -175,10 +173,7 @@ _LAYOUTS = tuple(map(_Layout, (";", "\t", ",", None)))
 
 
 def _layout(path: Path, lines: list[str]) -> tuple[_Layout, int, int]:
-    """Find the separator, the table's first line and its width by the first two lines of numbers.
-
-    Lines directly above them that look like rows are rows as well.
-    """
+    """Find separator, first line and width by the first two lines of numbers; rows above belong."""
     for k, line in enumerate(islice(lines, MAX_HEADER)):
         following = next(filter(None, lines[k + 1 : k + 4]), "")
         for layout in _LAYOUTS:
@@ -194,9 +189,7 @@ def _layout(path: Path, lines: list[str]) -> tuple[_Layout, int, int]:
                 _refuse_blank(path, [layout.cells(line) for line in lines[:k]], start, width)
                 return layout, start, width
     found = next(filter(str.strip, lines), "").strip()[:60]
-    raise InputError(
-        "path", str(path), f"rows of numbers (no two lines of numbers; it begins with {found!r})"
-    )
+    raise unreadable(path, f"rows of numbers (no two lines of numbers; it begins with {found!r})")
 
 
 def _refuse_blank(path: Path, above: list[list[str]], start: int, width: int) -> None:
@@ -204,7 +197,7 @@ def _refuse_blank(path: Path, above: list[list[str]], start: int, width: int) ->
     padded = any(len(cells) == width and not cells[-1] for cells in above[:start])
     if padded and any(not any(cells) for cells in above[start:]):
         found = f"line {start + 1} has none: write nan in a row of missing points, delete a blank line"
-        raise InputError("path", str(path), f"entries between separators ({found})")
+        raise unreadable(path, f"entries between separators ({found})")
 
 
 def _refuse_blocks(path: Path, rows: Array, blanks: set[int]) -> None:
@@ -213,9 +206,9 @@ def _refuse_blocks(path: Path, rows: Array, blanks: set[int]) -> None:
     if rows.shape[1] <= POINT:
         return
     if 0 < len(inner) < len(rows) - 1:
-        raise InputError("path", str(path), f"one table (a blank line stands below its row {min(inner)})")
+        raise unreadable(path, f"one table (a blank line stands below its row {min(inner)})")
     if np.isnan(rows[:, 1::2]).all() and not np.isnan(rows[:, ::2]).all(axis=0).any():
-        raise InputError("path", str(path), "one separator between entries (every second column is empty)")
+        raise unreadable(path, "one separator between entries (every second column is empty)")
 
 
 def _plain_numbers(layout: _Layout, lines: Iterator[str]) -> Array | None:
@@ -231,8 +224,7 @@ def _plain_numbers(layout: _Layout, lines: Iterator[str]) -> Array | None:
 def _numbers(
     path: Path, layout: _Layout, lines: Iterator[tuple[int, str]], width: int
 ) -> tuple[Array, list[str]]:
-    """Return the numbers of all lines, each of ``width`` entries, and notes. Raises InputError with the
-    line."""
+    """Return the numbers of all lines, each of ``width`` entries, and notes. Raises `InputError`."""
     values, decimals, filled, short = array("d"), set[str](), [False, False], list[int]()
     for number, line in lines:
         if layout.separator != ",":
@@ -246,13 +238,13 @@ def _numbers(
             found = f"line {number} has {len(cells)}, the first row {width}"
             if len(decimals) > 1:
                 found = f"decimal points and commas, line {number}: {line[:40]!r}"
-            raise InputError("path", str(path), f"rows of one length and kind ({found})")
+            raise unreadable(path, f"rows of one length and kind ({found})")
         try:
             values.extend([layout.value(cell) for cell in cells])
         except ValueError:
             alien = layout.unknown(cells)[0][:40]
             allowed = f"numbers and {', '.join(NOT_MEASURED)} in the table (line {number}: {alien!r})"
-            raise InputError("path", str(path), allowed) from None
+            raise unreadable(path, allowed) from None
         filled = [filled[0] or cells[0] != "", filled[1] or cells[-1] != ""]
     notes = [f"separator {layout.name}, decimal comma"] if "," in decimals else []
     if short:

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from refimpl.errors import MOST, InputError
+from refimpl.errors import MOST, InputError, unreadable
 from refimpl.grid import Array
 from refimpl.measured.reader_process import read_elsewhere
 from refimpl.measured.reading import read_or_refuse
@@ -26,9 +26,7 @@ _NUMPY = b"\x93NUMPY"  # read by NumPy in Python, which does not crash
 def read_untrusted(path: Path, load: Callable[[], T]) -> T:
     """Return what ``load`` returns; raise `InputError` for whatever else becomes of the file.
 
-    Parsers of other people raise errors of any kind on bytes that are not what they claim to be, and some
-    crash the process or take all its memory: binary and large files are read in another one
-    (`reader_process`), to which ``load`` is pickled.
+    Parsers may crash or take all memory: binary and large files are read in another process.
     """
     reading = partial(read_or_refuse, path, partial(_read, path, load))
     return read_elsewhere(path, reading) if _is_risky(path) else reading()
@@ -57,7 +55,6 @@ def refuse_huge(path: Path, heights: Array) -> None:
 
 
 def _refuse_external_data(path: Path) -> None:
-    """Raise `InputError` for an HDF5 file that takes bytes from other files."""
     try:
         import h5py
     except ImportError:  # nothing can read such a file then
@@ -80,4 +77,4 @@ def _refuse_external_data(path: Path) -> None:
         file.visititems(see_object)
     if found:
         allowed = f"an HDF5 file that holds all its data ({found[0][:60]!r} is in another file)"
-        raise InputError("path", str(path), allowed)
+        raise unreadable(path, allowed)

@@ -12,7 +12,7 @@ import struct
 import zlib
 from pathlib import Path
 
-from refimpl.errors import InputError
+from refimpl.errors import unreadable
 from refimpl.measured import x3p
 from refimpl.measured.reading import MAX_BYTES, UNITS, Overrides
 
@@ -46,10 +46,10 @@ def _sur(raw: bytes, path: Path) -> tuple[Source, tuple[str, ...]]:
     at = _SUR_HEADER + comment + private
     (count,) = struct.unpack_from("<I", raw, at)
     if count > 1024:
-        raise InputError("path", str(path), f"a compressed SUR file of at most 1024 streams (this: {count})")
+        raise unreadable(path, f"a compressed SUR file of at most 1024 streams (this: {count})")
     lengths = [struct.unpack_from("<II", raw, at + 4 + 8 * k) for k in range(count)]
     if sum(length for length, _ in lengths) > MAX_BYTES:
-        raise InputError("path", str(path), f"at most {MAX_BYTES} bytes unpacked")
+        raise unreadable(path, f"at most {MAX_BYTES} bytes unpacked")
     at += 4 + 8 * count
     data = []
     for length, packed in lengths:
@@ -83,19 +83,15 @@ def _gwy(raw: bytes, path: Path, given: Overrides) -> tuple[Source, tuple[str, .
 
 
 def _gwy_unit(field: bytes, key: bytes) -> str:
-    """Return the unit that a field states, or nothing."""
     found = re.search(rb"%b\0oGwySIUnit\0.{4}unitstr\0s([^\0]*)" % key, field, re.DOTALL)
     return found[1].decode("utf-8", "replace") if found else ""
 
 
 def wyko_header(path: Path, header: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the header of Wyko's text with all numbers as type 7, the one that the library sees, and a Mult.
-
-    Heights are in nm if the second flag of the first line is 1, else in Wavelength / Mult nm.
-    """
+    """Return Wyko's header with all numbers as type 7, which the library sees, and a Mult."""
     named = {line.split()[0] for line in header}
     if "Wavelength" not in named and header[0].split()[-2] != "1":
-        raise InputError("path", str(path), "Wyko's text with a Wavelength, which scales its heights")
+        raise unreadable(path, "Wyko's text with a Wavelength, which scales its heights")
     number = re.compile(r"^(Mult|Wavelength|Aspect|Pixel_size)\s+\d+\s")
     typed = tuple(number.sub(r"\1 7 ", line) for line in header)
     return typed if "Mult" in named else (typed[0], "Mult 7 2 1", *typed[1:])

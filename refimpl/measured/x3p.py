@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from refimpl.errors import InputError, printable
+from refimpl.errors import printable, unreadable
 
 _REVISION = "ISO5436 - 2000"  # the one text that the library takes
 _DATA = "bindata/data.bin"
@@ -28,10 +28,7 @@ _MAP = {
 
 
 def rewritten(path: Path) -> tuple[str | io.BytesIO, tuple[str, ...]]:
-    """Return the archive to hand to the library, and a note of what was changed.
-
-    Raises `InputError` for data of another checksum than main.xml states, and for what is no regular map.
-    """
+    """Return the archive for the library, and a note of changes; `InputError` for damaged data, no map."""
     copy = io.BytesIO()
     with zipfile.ZipFile(path) as archive, zipfile.ZipFile(copy, "w", compresslevel=1) as target:
         members = {member.filename.replace("\\", "/"): member for member in archive.infolist()}
@@ -79,13 +76,13 @@ def _refuse_others(path: Path, root: ElementTree.Element) -> None:
     found = {key: root.findtext(key) or "none" for key in _MAP}
     if found != _MAP:
         said = ", ".join(f"{'/'.join(key.split('/')[-2:])} is {printable(v)!r}" for key, v in found.items())
-        raise InputError("path", str(path), f"X3P of one map of heights on a regular grid ({said})")
+        raise unreadable(path, f"X3P of one map of heights on a regular grid ({said})")
 
 
 def _refuse_changed(path: Path, content: bytes, stated: str, link: str) -> None:
     found = hashlib.md5(content, usedforsecurity=False).hexdigest()
     if len(stated) == len(found) and found != stated.lower():
-        raise InputError("path", str(path), f"data of the checksum that main.xml states ({link})")
+        raise unreadable(path, f"data of the checksum that main.xml states ({link})")
 
 
 def _linked(root: ElementTree.Element, listed: ElementTree.Element) -> bytes:

@@ -168,10 +168,7 @@ def relative_gap(gap: float, energy: float) -> float:
 def contact_residuals(
     gap: float, energy: float, approach: float, lowest: float, rounding: float = 0.0
 ) -> tuple[float, float]:
-    """Return the complementarity gap over the elastic energy, and the penetration over the approach.
-
-    Gap and energy are per total pressure; what is within ``rounding`` (m) counts as 0.
-    """
+    """Return gap over energy, per total pressure, and penetration over approach; 0 within rounding (m)."""
     gap, depth = (x if x > rounding else 0.0 for x in (gap, max(0.0, approach - lowest)))
     return relative_gap(gap, energy), depth / (abs(approach) or 1.0)
 
@@ -183,20 +180,14 @@ def flat_rounding(problem: Problem) -> float:
 
 
 def mean_rounding(problem: Problem, operator: Influence) -> float:
-    """Return what rounding leaves of a mean pressure's displacement, over the peak pressure (m/Pa).
-
-    Where that displacement is 0, as in a periodic scene, it adds nothing to the energy.
-    """
+    """Return what rounding leaves of a mean displacement that is 0, over the peak pressure (m/Pa)."""
     if operator.displaces_mean:
         return 0.0
     return _MEAN_ROUNDING * _EPS * problem.elasticity.mean_compliance(problem.grid)
 
 
 def displacement_rounding(problem: Problem, operator: Influence, peak: float, traction: Array) -> float:
-    """Return what rounding leaves of the gap (m): of the peak pressure's mean, and of the traction's shear.
-
-    Shear is rounded as on single elements one apart.
-    """
+    """Return what rounding leaves of the gap (m): of the peak's mean, of shear on single elements."""
     product = np.asarray(problem.grid.element_size * math.sqrt(inner(traction, traction)))
     shear = _SHEAR_ROUNDING * _EPS * abs(float(problem.elasticity.gap_by_shear(product)))
     most = _MOST_ROUNDING * problem.elasticity.element_compliance(problem.grid)
@@ -222,12 +213,8 @@ def certify(
 ) -> State:
     """Recompute displacements, slopes, approach, forces and every residual from the returned arrays.
 
-    All arguments but the first two are the fields of a `SolverResult`; ``excluded``, ``status`` and
-    ``iterations`` are passed on and enter no number.
-
-    ``slopes`` enter only through the facet tractions of the slope correction and through the residual
-    ``slope``, and the plastic ``indentation`` (m) only through the slopes of the common surface; the cosines
-    are those of the recomputed displacements.
+    Arguments after the first two are fields of a `SolverResult`, of which ``slopes`` and ``indentation`` (m)
+    enter through facet tractions, the common surface and the residual ``slope`` alone.
     """
     cap = problem.cap
     normal = problem.elasticity.normal(operator, pressure)
@@ -299,8 +286,7 @@ def certify(
 
 
 def _shares(f: Array) -> Array:
-    """Return the pressures over their sum, as products of very small ones would underflow; 0 without
-    contact."""
+    """Return pressures over their sum, as products of small ones underflow; 0 without contact."""
     total = float(f.sum())
     return f / total if total > 0 else f
 
@@ -313,11 +299,7 @@ def _capped_gap(f: Array, v: Array, cap: float, approach: float) -> float:
 
 
 def missed_approach(f: Array, v: Array, cap: float, approach: float) -> float:
-    """Return the distance of a prescribed approach from that of the state (m).
-
-    Where some elements are at the cap and the others without pressure, every approach between the ``v`` of
-    both is the state's.
-    """
+    """Return the distance of a prescribed approach from the state's interval of approaches (m)."""
     if np.any((f > 0) & (f < cap)) or not np.any(f >= cap):
         return abs(approach_from(f, v, cap) - approach)
     lowest = float(np.min(v, where=f < cap, initial=np.inf))

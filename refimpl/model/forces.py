@@ -62,11 +62,7 @@ def facet_resultants(pressure: Array, traction: Array, slopes: Slopes, element_a
 
 
 def friction_coefficient(friction_force: float, normal_load: float) -> float:
-    """Return Eq. (4): ``mu = F / P``, with the normal force N where no load is prescribed; NaN without load.
-
-    >>> friction_coefficient(7.0, 70.0)
-    0.1
-    """
+    """Return Eq. (4), ``mu = F / P``, by N where no load is prescribed; NaN without load."""
     return friction_force / normal_load if normal_load else math.nan
 
 

@@ -45,10 +45,6 @@ class Friction:
     """Local friction ``r = tau + beta f`` on contact, Eq. (1): ``tau`` in Pa, ``beta`` dimensionless.
 
     Raises `InputError` for a negative or infinite number.
-
-    >>> law = Friction(tau=2.0, beta=0.5)
-    >>> law.traction(np.array([0.0, 4.0]), np.array([False, True]))
-    array([0., 4.])
     """
 
     tau: float = 0.0

@@ -19,9 +19,6 @@ class Material:
 
     Raises `InputError` unless ``E`` and ``hardness`` are positive and finite (``E`` may be infinite) and
     ``-1 < nu <= 0.5``.
-
-    >>> round(Material(E=200e9, nu=0.3).plane_strain_modulus / 1e9, 3)
-    219.78
     """
 
     E: float
@@ -91,8 +88,7 @@ class Pair:
 
     @property
     def softer_hardness(self) -> float | None:
-        """The smaller of the hardnesses given (Pa); None when neither is. A body without one counts as
-        unlimited."""
+        """The smaller of the hardnesses given (Pa); None without any."""
         given = [h for h in (self.lower.hardness, self.upper.hardness) if h is not None]
         return min(given, default=None)
 

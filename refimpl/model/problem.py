@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from refimpl.errors import InputError
-from refimpl.grid import Array, Grid, Mask, Window
+from refimpl.grid import Array, Grid, Window
 from refimpl.model.elasticity import Elasticity, Influence
 from refimpl.model.friction import FrictionLaw
 from refimpl.model.materials import Pair
@@ -209,11 +209,5 @@ class Problem:
         return float(np.maximum(each, 0.0).sum()) * self.grid.element_area
 
     def nominal_load(self, normal_force: float) -> float:
-        """Return the load of Eq. (4): the prescribed one, or the normal force at a prescribed approach
-        (N)."""
+        """Return the load of Eq. (4): the prescribed one, or N at a prescribed approach (N)."""
         return self.load if self.load is not None else normal_force
-
-
-def no_elements(problem: Problem) -> Mask:
-    """Return a mask of the problem's shape without any element."""
-    return np.zeros(problem.gap.shape, dtype=bool)

@@ -70,30 +70,25 @@ class Slopes:
     @cached_property
     def cos_x(self) -> Array:
         """``cos(theta_x)``."""
-        if self.is_flat:
-            return np.broadcast_to(1.0, self.tan_x.shape)
-        return 1 / np.sqrt(1 + self.tan_x**2)
+        return self._cosine(self.tan_x)
 
     @cached_property
     def cos_y(self) -> Array:
         """``cos(theta_y)``."""
-        if self.is_flat:
-            return np.broadcast_to(1.0, self.tan_y.shape)
-        return 1 / np.sqrt(1 + self.tan_y**2)
+        return self._cosine(self.tan_y)
+
+    def _cosine(self, tangent: Array) -> Array:
+        return np.broadcast_to(1.0, tangent.shape) if self.is_flat else 1 / np.sqrt(1 + tangent**2)
 
     @cached_property
     def sin_x(self) -> Array:
         """``sin(theta_x)``."""
-        if self.is_flat:
-            return self.tan_x
-        return self.tan_x * self.cos_x
+        return self.tan_x if self.is_flat else self.tan_x * self.cos_x
 
     @cached_property
     def sin_y(self) -> Array:
         """``sin(theta_y)``."""
-        if self.is_flat:
-            return self.tan_y
-        return self.tan_y * self.cos_y
+        return self.tan_y if self.is_flat else self.tan_y * self.cos_y
 
     @cached_property
     def cosine_product(self) -> Array:

@@ -91,5 +91,4 @@ def _halved_rows(values: Array) -> Array:
 
 
 def _repeated(values: Array) -> Array:
-    """Return each value for all four elements of a block."""
     return np.repeat(np.repeat(values, 2, axis=0), 2, axis=1)

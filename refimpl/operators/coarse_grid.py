@@ -28,11 +28,7 @@ class CoarseGrid(NamedTuple):
 
     @classmethod
     def under(cls, shape: Shape, window: Callable[[Array], Array], first: float, beyond: int) -> CoarseGrid:
-        """Return the coarse grid for a window of elements, with points from `first` and as many beyond the
-        cells.
-
-        ``window`` is the weight by the distance, both in spacings.
-        """
+        """Return the coarse grid of a window, points from ``first``; weights by distance in spacings."""
         n, m = (-(-k // (_CELLS * COARSER)) for k in shape)
         elements = (np.arange(_CELLS * COARSER) + 0.5) / COARSER
         points = np.arange(_CELLS + beyond)[:, None] + first

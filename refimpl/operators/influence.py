@@ -17,10 +17,7 @@ def window_influence(
     counter: Counter | None = None,
     tolerance: float = 0.0,
 ) -> WindowInfluence:
-    """Return the operator of a window of the grid onto itself; a periodic grid is its own window.
-
-    Where a tolerance leaves room for products to 1e-11 of the largest displacement, they are the quickest.
-    """
+    """Return a window's operator onto itself, the quickest that the tolerance allows."""
     if grid.periodic:
         return PeriodicInfluence(grid, direction, counter=counter)
     window = window or grid.window

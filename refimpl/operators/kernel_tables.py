@@ -17,15 +17,14 @@ from refimpl.kernels import normal_table, tangential_table
 _TABLES = {"normal": normal_table, "tangential": tangential_table}
 _SHARED = 4  # ratio of sides up to which a table is square: windows of all these shapes share it
 _KEPT = 8  # tables kept, the last used ones; a square grid needs two
-_LARGEST = 4_000_000  # entries of a table that is kept
+_LARGEST = 4_000_000  # entries of a table that is kept: 32 MB, which take 0.25 s to compute again
 _cache: OrderedDict[tuple[str, float, bool], Array] = OrderedDict()
 
 
 def unit_table(kind: str, shape: tuple[int, int], aspect: float = 1.0) -> Array:
     """Return a read-only table of ``I[1/rho]`` ("normal") or ``I[x/rho^2]`` ("tangential").
 
-    Entry ``[i, j]`` belongs to the offset ``(i, j aspect)`` from an element of edges ``1 x aspect``. The
-    largest table so far is kept up to 32 MB, and smaller ones are views of it.
+    Entry ``[i, j]`` belongs to the offset ``(i, j aspect)`` from an element of edges ``1 x aspect``.
     """
     n, m = shape
     if max(n, m) <= _SHARED * min(n, m):

@@ -87,19 +87,15 @@ class NearFarInfluence(FFTInfluence):
         return fourier.plane(table, self.circle, threads(points)).real
 
     def normal(self, pressure: Array) -> Array:
-        """Return ``I[1/rho]`` applied to a pressure."""
         return self._sum(pressure, self._near.normal, self._far.normal)
 
     def shear(self, traction: Array) -> Array:
-        """Return ``I[s/rho^2]`` applied to a traction along the sliding direction."""
         return self._sum(traction, self._near.shear, self._far.shear)
 
     def shear_across(self, traction: Array) -> Array:
-        """Return ``I[t/rho^2]`` applied to a traction across the sliding direction."""
         return self._sum(traction, self._near.shear_across, self._far.shear_across)
 
     def coupled(self, ratio: float) -> Callable[[Array], Array]:
-        """Return the product ``I[1/rho] + ratio I[s/rho^2]`` of a pressure."""
         near, far = self._near.coupled(ratio), self._far.coupled(ratio)
         return lambda pressure: self._sum(pressure, near, far)
 
@@ -133,5 +129,4 @@ class _PartCounter(Counter):
         self._whole, self._name = whole, name
 
     def add(self, what: str, points: int) -> None:
-        """See `Counter`."""
         self._whole.add(f"{self._name} {what}", points)

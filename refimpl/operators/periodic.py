@@ -8,18 +8,17 @@ planes. Fields are the band-limited interpolants of the element values, as in pe
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
 import scipy
 
 from refimpl.grid import Array, Grid
-from refimpl.operators.fft import Counter
+from refimpl.operators.fft import Convolution, Counter
 from refimpl.operators.transforms import Complex, fourier, threads
 
 
-class PeriodicInfluence:
+class PeriodicInfluence(Convolution):
     """Influence convolutions on the periodic rectangle; arrays of the grid's shape."""
 
     displaces_mean = False
@@ -27,33 +26,8 @@ class PeriodicInfluence:
     def __init__(self, grid: Grid, direction: float, *, counter: Counter | None = None) -> None:
         self.grid = grid
         self.direction = direction
-        self.source = grid.window
+        self.source, self._points = grid.window, grid.elements
         self.counter = counter if counter is not None else Counter()
-
-    def normal(self, pressure: Array) -> Array:
-        """Return ``I[1/rho]`` applied to a pressure."""
-        self.counter.add("normal", self.grid.elements)
-        return self._filter(pressure, self._normal_symbol)
-
-    def shear(self, traction: Array) -> Array:
-        """Return ``I[s/rho^2]`` applied to a traction along the sliding direction."""
-        self.counter.add("shear", self.grid.elements)
-        return self._filter(traction, self._tangential_symbol(self.direction))
-
-    def shear_across(self, traction: Array) -> Array:
-        """Return ``I[t/rho^2]`` applied to a traction across the sliding direction."""
-        self.counter.add("shear", self.grid.elements)
-        return self._filter(traction, self._tangential_symbol(self.direction + math.pi / 2))
-
-    def coupled(self, ratio: float) -> Callable[[Array], Array]:
-        """Return the product ``I[1/rho] + ratio I[s/rho^2]`` of a pressure: both symbols in one."""
-        symbol = self._normal_symbol + ratio * self._tangential_symbol(self.direction)
-
-        def product(pressure: Array) -> Array:
-            self.counter.add("normal and shear", self.grid.elements)
-            return self._filter(pressure, symbol)
-
-        return product
 
     @property
     def circle(self) -> tuple[int, int]:
@@ -63,7 +37,7 @@ class PeriodicInfluence:
     @property
     def symbol(self) -> Array:
         """``2 pi / q`` (m), half along the first axis; zero for the mean."""
-        return self._normal_symbol
+        return self._normal_hat
 
     @cached_property
     def _wavevectors(self) -> tuple[Array, Array, Array]:
@@ -76,10 +50,18 @@ class PeriodicInfluence:
         return q_x, q_y, squared
 
     @cached_property
-    def _normal_symbol(self) -> Array:
+    def _normal_hat(self) -> Array:
         return 2 * np.pi / np.sqrt(self._wavevectors[2])
 
-    def _tangential_symbol(self, angle: float) -> Complex:
+    @property
+    def _shear_hat(self) -> Complex:
+        return self._tangential_hat(self.direction)
+
+    @property
+    def _across_hat(self) -> Complex:
+        return self._tangential_hat(self.direction + math.pi / 2)
+
+    def _tangential_hat(self, angle: float) -> Complex:
         q_x, q_y, squared = self._wavevectors
         (n, m), q_x, q_y = self.grid.shape, q_x.copy(), q_y.copy()
         if n % 2 == 0:  # a real field has no sine at the Nyquist frequency
@@ -89,7 +71,7 @@ class PeriodicInfluence:
         q_s: Array = math.cos(angle) * q_x + math.sin(angle) * q_y
         return np.complex128(-2j * np.pi) * q_s / squared
 
-    def _filter(self, source: Array, symbol: Array | Complex) -> Array:
+    def _convolve(self, source: Array, hat: Array | Complex) -> Array:
         workers = threads(source.size)
         spectrum = fourier.plane(source, source.shape, workers)
-        return fourier.plane_back(spectrum * symbol, source.shape, workers)
+        return fourier.plane_back(spectrum * hat, source.shape, workers)

@@ -159,8 +159,7 @@ class ExtendedPreconditioner:
 
 
 def _near(marked: Mask, width: int) -> Mask:
-    """Mark all within a square's reach of something marked, in rows this long; a frame as wide is not
-    marked."""
+    """Mark all within a square's reach of a mark, in rows this long; a frame as wide has no mark."""
     for stride in (1, width):
         near = marked.copy()
         for step in range(stride, _REACH * stride + 1, stride):

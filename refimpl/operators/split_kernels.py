@@ -32,8 +32,7 @@ def window(distance: Array) -> Array:
 
 
 def near_quarter(kind: str, shape: Shape) -> Array:
-    """Return the near part at the offsets from 0 to half of each circle, as `unit_table` has the whole
-    kernel."""
+    """Return the near part at offsets from 0 to half of each circle, as `unit_table` has the whole."""
     quarter = np.zeros(shape)
     near = _near(kind)
     n, m = min(shape[0], len(near)), min(shape[1], len(near))
@@ -101,8 +100,7 @@ def _taps() -> Array:
 
 
 def _filter(count: int, sign: int) -> Array:
-    """Return the matrix from values at ``count + _TAPS`` offsets from 0, of an even or odd field, to those
-    filtered."""
+    """Return the matrix from ``count + _TAPS`` offsets of an even or odd field to those filtered."""
     taps, i, j = _taps(), np.arange(count)[:, None], np.arange(count + _TAPS)
     matrix: Array = taps[np.minimum(np.abs(i - j), _TAPS + 1)]
     matrix[:, 1:] += sign * taps[np.minimum(i + j, _TAPS + 1)][:, 1:]

@@ -65,11 +65,7 @@ class ExpectedContact:
 
     @property
     def edge_error(self) -> float:
-        """Relative error of A by whole elements along the edges of the patches.
-
-        On a circle of radius r the excess of `refimpl.model.forces.perimeter_corrected_area` is 0.30 spacing
-        / r.
-        """
+        """Relative error of A by whole elements at the patches' edges: on a circle 0.30 spacing / r."""
         return 8 / math.pi * EDGE_SHARE * math.sqrt(math.pi * self.patches / self.elements)
 
 
@@ -107,7 +103,6 @@ def expected_contact(problem: Problem) -> ExpectedContact:
 
 
 def _coarse(problem: Problem) -> Problem:
-    """Return the problem's heights at fewer points, if there are more than it takes."""
     n, m = problem.grid.shape
     grid = problem.grid.refined((min(n, _COARSE), min(m, _COARSE)))
     gap, mean_surface = (resampled(z, grid.shape) for z in (problem.gap, problem.mean_surface))
@@ -123,20 +118,17 @@ def _bearing(problem: Problem, stiffness: float, load: float) -> Mask:
 
 
 def _first(order: NDArray[np.intp], count: int, gap: Array) -> Mask:
-    """Return the first ``count`` elements of an order, or all, and those as low as the last: a flat top
-    touches as a whole."""
+    """Return the first ``count`` elements of an order, and those as low as the last of them."""
     last = order[min(count, order.size) - 1]
     chosen: Mask = gap <= gap.flat[last] + _ROUNDING * np.ptp(gap)
     return chosen
 
 
 def _rising(gap: Array) -> NDArray[np.intp]:
-    """Return all elements from the lowest on, equal ones in the grid's order."""
     return np.argsort(gap, axis=None, kind="stable")
 
 
 def _gradient_squared(problem: Problem) -> Array:
-    """Return the squared gradient of the gap."""
     slopes = _slopes(problem, problem.gap)
     squared: Array = slopes.tan_x**2 + slopes.tan_y**2
     return squared
@@ -145,10 +137,7 @@ def _gradient_squared(problem: Problem) -> Array:
 def solved_contact(
     problem: Problem, pressure: Array, clearance: Array, before: ExpectedContact
 ) -> ExpectedContact:
-    """Return the description of a solved contact by its pressure (Pa) and clearance (m).
-
-    What follows from the heights alone is that of ``before``.
-    """
+    """Return a solved contact's description by pressure (Pa), clearance (m), and ``before``'s heights."""
     contact: Mask = pressure > 0
     loaded = pressure[contact]
     total = float(loaded.sum())
@@ -159,10 +148,7 @@ def solved_contact(
 def _described(
     problem: Problem, contact: Mask, loads: Array, clearance: Array, mean_pressure: float, pressure: float
 ) -> dict[str, Any]:
-    """Return what depends on the contact set; ``loads`` weighs its elements, in their order.
-
-    Sums are not BLAS's: bits vary there.
-    """
+    """Return what depends on the contact set, weighted by ``loads``. Bits vary in BLAS's sums."""
     window = problem.grid.window_around(contact, margin=1)
     near, where = problem.windowed(window), contact[window.slices]
     lower, upper = near.heights
@@ -191,11 +177,7 @@ def _on(where: Mask, problem: Problem, heights: Array) -> tuple[Array, Array]:
 
 
 def _symmetries(coarse: Problem, problem: Problem) -> tuple[bool, bool]:
-    """Return whether both surfaces are their own images after half a turn, and across the sliding line.
-
-    So they are if gap and mean surface are; the coarse heights rule most scenes out before all heights are
-    compared.
-    """
+    """Return whether both surfaces are images after half a turn, and across the sliding line."""
     seen = [z for p in (coarse, problem) for z in (p.gap, p.mean_surface)]
     return all(_is_image(z, z[::-1, ::-1]) for z in seen), _mirrored(problem.direction, seen)
 
@@ -205,8 +187,7 @@ def _slopes(problem: Problem, heights: Array) -> Slopes:
 
 
 def _patches(contact: Mask, periodic: bool) -> float:
-    """Return the number of patches of equal size with the same weight: ``(sum n)^2 / sum n^2`` over the
-    patches."""
+    """Return the number of equal patches with the same weight: ``(sum n)^2 / sum n^2``."""
     sizes = patch_sizes(contact, periodic=periodic).astype(np.float64)
     return float(sizes.sum() ** 2 / np.sum(sizes**2))
 

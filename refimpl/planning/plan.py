@@ -118,21 +118,14 @@ def make_plan(
 
 
 def estimated_memory(method: Method, grid: Grid, *, extent: float = 0.0) -> int:
-    """Return the estimated bytes at the peak of a solve.
-
-    ``extent``: share of the grid in the rectangle around the expected contact; by default only arrays of the
-    whole grid are counted.
-    """
+    """Return the bytes at a solve's peak; ``extent``: the expected contact's rectangle over the grid."""
     if method == "dense":
         return 8 * _DENSE_MATRICES * grid.elements**2
     return round(max(_GRID_BYTES, _WINDOW_BYTES * min(1.0, _GROWTH * extent)) * grid.elements)
 
 
 def memory_of(method: Method, grid: Grid, *, extent: float = 0.0) -> int:
-    """Return the `estimated_memory`; raise `InputError` if it exceeds the free memory or the dense method.
-
-    Up to `UNREAD` bytes are taken to be free.
-    """
+    """Return the `estimated_memory`; `InputError` if it exceeds the free memory or the dense method."""
     if method == "dense" and grid.elements > LARGEST_DENSE:
         raise InputError("grid", max(grid.shape), f"at most {LARGEST_DENSE} elements by method dense")
     memory = estimated_memory(method, grid, extent=extent)

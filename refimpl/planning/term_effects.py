@@ -160,11 +160,7 @@ def effects_in(
     before: ExpectedContact,
     elements: int | None = None,
 ) -> dict[str, Effect]:
-    """Return the effect of each named term, estimated again from a solved pressure (Pa) and clearance (m).
-
-    With ``elements``, as on a grid of at least so many: on coarse grids terms may change elements that the
-    grid of the decision would not change.
-    """
+    """Return each named term's effect by a solved pressure (Pa) and clearance (m), as on ``elements``."""
     if not names or not pressure.any():
         return {}
     contact = solved_contact(problem, pressure, clearance, before)

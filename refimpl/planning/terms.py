@@ -50,8 +50,7 @@ class Term:
 def budget_of(problem: Problem, contact: ExpectedContact, demand: float) -> float:
     """Return the sum that the effects of all neglected terms may reach: half the demand.
 
-    Without friction, symmetric surfaces have neither F nor Q, and slopes enter by their squares alone, as a
-    change of A and f. There the budget is a hundredth of the grid's own error of A, if that is more.
+    Frictionless symmetric surfaces have slopes by squares alone: a hundredth of the grid's error of A.
     """
     if is_frictionless(problem.friction) and contact.symmetric:
         return max(_SHARE_OF_DEMAND * demand, _SHARE_OF_EDGE_ERROR * contact.edge_error)
@@ -66,10 +65,7 @@ def choose(
     *,
     for_mu: bool = False,
 ) -> tuple[Term, ...]:
-    """Return all terms in a fixed order; the effects of the negligible ones add up to at most the budget.
-
-    Where the budget is one of mu (``for_mu``) and there is no friction, slopes are all of mu and are kept.
-    """
+    """Return all terms; negligible ones add up to the budget. Frictionless slopes are all of mu."""
     choice = _Choice(problem, Scales(contact, problem.pair, problem.friction), requested)
     return choice.terms(budget, for_mu)
 
@@ -177,8 +173,7 @@ class _Choice:
 
 
 def _smallest(effects_of: dict[str, float], budget: float) -> tuple[set[str], float]:
-    """Return the names whose effects, smallest first, add up to at most the budget; and what is left of
-    it."""
+    """Return the names of the smallest effects that add up to at most the budget; and what is left."""
     names: set[str] = set()
     for name, effect in sorted(effects_of.items(), key=lambda item: item[1]):
         if effect > budget:

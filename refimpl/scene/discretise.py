@@ -20,11 +20,8 @@ def discretise(
 ) -> Problem:
     """Return the scene's problem on a grid, with all terms but the slope correction by default.
 
-    ``approach`` replaces the load if given: it counts from first contact, or from the mean planes when the
-    scene is periodic (m). The datum, the difference of both, is defined here.
-
-    Raises `InputError` for an approach that is rounding of the datum: at full contact, where it is 0, any
-    mean pressure will do.
+    ``approach`` (m), from first contact or the mean planes, replaces the load; the datum, the difference of
+    both, is defined here. Raises `InputError` for an approach that is rounding of the datum.
     """
     lower, upper = scene.sampled(grid)
     gap = upper - lower
@@ -61,13 +58,8 @@ class Discretiser:
     """
 
     def __init__(self, scene: Scene, approach: float | None) -> None:
-        self._scene, self._approach = scene, approach
+        self.scene, self._approach = scene, approach
         self._last: Problem | None = None
-
-    @property
-    def scene(self) -> Scene:
-        """The scene."""
-        return self._scene
 
     def with_all_terms(self, grid: Grid) -> Problem:
         """Return the problem with all terms, for planning, and keep it."""
@@ -81,4 +73,4 @@ class Discretiser:
         return problem.with_terms(terms)
 
     def _problem(self, grid: Grid) -> Problem:
-        return discretise(self._scene, grid, approach=self._approach)
+        return discretise(self.scene, grid, approach=self._approach)

@@ -67,11 +67,7 @@ class Key:
 
 
 def scene_keys() -> dict[str, tuple[Key, ...]]:
-    """Return the keys of every table of a scene file: scene, body, material, friction, surfaces by kind.
-
-    >>> [key.name for key in scene_keys()["friction"]]
-    ['tau', 'beta']
-    """
+    """Return the keys of every table of a scene file: scene, body, material, friction, surfaces by kind."""
     tables = {
         "scene": _scene(),
         "body": _body(),
@@ -91,10 +87,7 @@ def sample_scene(kind: str = "flat", choice: int = 0) -> Table:
 
 
 def allowed_by(read: Callable[[Table], object], table: Table, key: str, wrong: object = _WRONG) -> str:
-    """Return what the refusal of a wrong value of ``key`` allows.
-
-    Raises LookupError where ``read`` takes that value, or refuses another key.
-    """
+    """Return what the refusal of a wrong value allows; LookupError where there is no such refusal."""
     try:
         read(table | {key: wrong})
     except InputError as refused:
@@ -155,7 +148,6 @@ def _body() -> tuple[Key, ...]:
 
 
 def _of(made: type, texts: key_texts.Texts, allowed: Callable[[str], str]) -> tuple[Key, ...]:
-    """Return the keys of a table that becomes an instance of a dataclass."""
     hints = get_type_hints(made)
     found = {f.name: f for f in fields(made) if f.init}
     _complete(made.__name__, texts, list(found))

@@ -19,10 +19,6 @@ def parameters(scene: Scene) -> dict[str, float]:
     ``load``, ``friction.tau``, ``friction.beta``, ``upper.material.E``, ``upper.material.nu``,
     ``upper.material.hardness`` where one is given, ``upper.surface[0].rms`` and so on; of two correlation
     lengths ``lower.surface[0].correlation_length[1]``.
-
-    >>> from refimpl.scene.scene_file import read_scene
-    >>> parameters(read_scene("hertz"))["load"]
-    70.0
     """
     law = vars(scene.friction) if is_dataclass(scene.friction) else {}
     found = {"load": scene.load}
@@ -39,10 +35,7 @@ def parameters(scene: Scene) -> dict[str, float]:
 
 
 def with_parameter(scene: Scene, name: str, value: float) -> Scene:
-    """Return the scene with one parameter changed.
-
-    Raises `InputError` for a name that is none of `parameters(scene)`, and for a value out of range.
-    """
+    """Return the scene with one parameter changed; `InputError` for an unknown one or a bad value."""
     require_one_of("parameter", name, parameters(scene))
     head, _, key = name.rpartition(".")
     if not head:
@@ -62,12 +55,7 @@ def with_parameter(scene: Scene, name: str, value: float) -> Scene:
 
 
 def differentiable_parameters(scene: Scene) -> dict[str, float]:
-    """Return the parameters that have derivatives: those that are not zero.
-
-    Without the modulus and Poisson's ratio of a rigid body, which change nothing, and without the numbers of
-    surfaces that make another realisation: seeds, cut-offs of a spectrum, and the correlation length of an
-    isotropic periodic surface.
-    """
+    """Return the parameters that have derivatives: not zero, no rigid body's, no other realisation's."""
     found = parameters(scene)
     for name in BODIES:
         body: Body = getattr(scene, name)

@@ -24,8 +24,7 @@ class Resolution:
 def resolution(scene: Scene, grid: Grid, accuracy: float) -> Resolution | None:
     """Return the resolution of the roughness that is resolved worst; None without random roughness.
 
-    Central differences see the rms slope too small (`refimpl.surfaces.surface.Detail.required`), and the
-    contact area goes as its inverse. For Eq. (9): ``l/h >= sqrt(2.3 / accuracy)``.
+    Contact area goes as the inverse of the slope seen. For Eq. (9): ``l/h >= sqrt(2.3 / accuracy)``.
     """
     spacing = max(grid.spacings)
     found = [
@@ -36,10 +35,7 @@ def resolution(scene: Scene, grid: Grid, accuracy: float) -> Resolution | None:
 
 
 def unresolved_slope(scene: Scene, grid: Grid) -> float:
-    """Return the share of the random roughness's rms gradient in waves that the grid does not hold.
-
-    A rough contact area goes as the inverse of the gradient (Bush, Gibson and Thomas 1975).
-    """
+    """Return the share of the rms gradient that the grid does not hold (Bush, Gibson and Thomas 1975)."""
     details = _details(scene, max(grid.spacings))
     squares = [detail.gradient**2 for detail in details]
     missed = sum(detail.unresolved * square for detail, square in zip(details, squares, strict=True))
@@ -47,6 +43,5 @@ def unresolved_slope(scene: Scene, grid: Grid) -> float:
 
 
 def _details(scene: Scene, spacing: float) -> list[Detail]:
-    """Return the finest details of the scene's random roughness."""
     parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
     return [detail for part in parts if (detail := part.detail(spacing)) is not None]

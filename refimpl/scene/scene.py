@@ -208,18 +208,12 @@ class Scene:
         return math.ceil(max(self.lengths) / min(self.lengths) / _SLENDER)
 
     def refined(self, M: int) -> Grid:
-        """Return a grid of a refinement: the same element ratio for every M, nearly 1.
-
-        M elements along the longer side, a multiple of ``16 slenderness``.
-        """
+        """Return M elements along the longer side, a multiple of ``16 slenderness``: one ratio for all M."""
         nx, ny = self.grid(_FAVOURED * self.slenderness).shape
         return self.grid((nx * M // max(nx, ny), ny * M // max(nx, ny)))
 
     def check_approach(self, approach: float) -> None:
-        """Raise `InputError` unless a prescribed approach (m) is finite, and below 0 in a periodic scene.
-
-        There it counts from the mean planes.
-        """
+        """Raise `InputError` unless an approach (m) is finite, and below the mean planes if periodic."""
         if self.periodic:
             require_number("approach", approach, "an approach below 0 m (mean planes)", below=0)
         require_number("approach", approach, "a finite approach in m")
@@ -280,8 +274,7 @@ class Scene:
         return _centred("lower", lower, grid), _centred("upper", upper, grid)
 
     def _summed(self, name: str, grid: Grid, offset: tuple[float, float]) -> Array:
-        """Return the sum of a body's parts (m); a refusal names the part, or the field of the scene that is
-        why."""
+        """Return the sum of a body's parts (m); a refusal names the part, or the scene's field."""
         z = grid.zeros
         for k, part in enumerate(self.parts(name)):
             try:
@@ -298,7 +291,6 @@ class Scene:
 
 
 def _two(field: str, value: Any, allowed: str) -> tuple[Any, Any]:
-    """Return a pair of numbers from a sequence of two."""
     if not isinstance(value, list | tuple) or len(value) != 2:
         raise InputError(field, value, allowed)
     first, second = (float(item) if isinstance(item, np.floating) else item for item in value)

@@ -42,12 +42,7 @@ def read_scene(path: str | Path) -> Scene:
 
 
 def read_tolerances(path: str | Path) -> dict[str, float]:
-    """Return the ``[tolerances]`` of a scene's file: relative half-widths (95 %) by parameter, none by
-    default.
-
-    >>> read_tolerances("table1-smooth")
-    {}
-    """
+    """Return a scene file's ``[tolerances]``: relative half-widths (95 %) by parameter."""
     table, folder = _read(path)
     return _tolerances(table, scene_from_dict(table, folder))
 
@@ -66,9 +61,7 @@ def _read(name: str | Path) -> tuple[dict[str, Any], Path]:
 
 
 def read_toml(path: Path, field: str) -> dict[str, Any]:
-    """Return the parsed file; raises `InputError`, naming the ``field``, for one that is too large or no
-    TOML.
-    """
+    """Return the parsed file; `InputError`, naming ``field``, for one too large or no TOML."""
     try:
         if path.stat().st_size > _MAX_BYTES:
             raise InputError(field, str(path), f"a TOML file of at most {_MAX_BYTES} bytes")
@@ -85,11 +78,7 @@ def read_toml(path: Path, field: str) -> dict[str, Any]:
 
 
 def shipped_scenes() -> tuple[str, ...]:
-    """Return the names of the scenes that ship as package data.
-
-    >>> "table1-smooth" in shipped_scenes()
-    True
-    """
+    """Return the names of the scenes that ship as package data."""
     folder = resources.files("refimpl").joinpath("data", "scenes")
     files = (Path(item.name) for item in folder.iterdir())
     return tuple(sorted(file.stem for file in files if file.suffix == ".toml"))
@@ -113,9 +102,7 @@ def scene_from_dict(table: Mapping[str, Any], folder: Path) -> Scene:
 
 
 def scene_to_dict(scene: Scene) -> dict[str, Any]:
-    """Return the scene as a plain table; raises `InputError` for arrays, and for surfaces and laws of one's
-    own.
-    """
+    """Return the scene as a plain table; `InputError` for arrays, and surfaces and laws of one's own."""
     if not isinstance(scene, Scene):
         raise InputError("scene", scene, "a Scene")
     if type(scene.friction) is not Friction:
@@ -167,7 +154,6 @@ def _body_to_dict(body: Body) -> dict[str, Any]:
 
 
 def _given(made: object, keys: Iterable[str]) -> dict[str, Any]:
-    """Return the values of these keys, without those that are not set."""
     values = {key: getattr(made, key) for key in keys}
     return {key: value for key, value in values.items() if value is not None}
 

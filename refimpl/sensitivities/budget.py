@@ -7,13 +7,11 @@ Every entry is a half-width in the number's unit that holds with 95 %.
 - input: ``sqrt(sum (dq/dp U_p)^2)`` over the scene's parameters with a stated tolerance, by the
   derivatives of `refimpl.sensitivity` (V&V 20, section 3-2).
 - sampling: of a mean over realisations of roughness; of one realisation there is none to state.
-- model form: what is known of the model's own error. V&V 20 leaves it to comparison with experiment;
-  four of its sources can be found from within. "coefficients": a flat half-space's influence coefficients on
-  a slope (`refimpl.half_space.influence_error`), taken as if all of them were wrong by as much as the worst
-  neighbour at the contact's rms gradient, which is a change of both moduli by that share. "half-space": what
-  the undeformed surfaces' own error (`refimpl.sensitivities.half_space`) exceeds that by. "cosines": the
-  printed cosines of Eqs (2) and (3) against the exact tractions of a facet. "plasticity": of an elastic
-  solution whose pressures exceed a given hardness, the difference to the capped solution.
+- model form: four sources that can be found from within, where V&V 20 has experiments. "coefficients": a
+  flat half-space's influence coefficients on a slope (`refimpl.half_space.influence_error`), as if both
+  moduli were wrong by as much as the worst neighbour. "half-space": what the undeformed surfaces' own error
+  (`refimpl.sensitivities.half_space`) exceeds that by. "cosines": printed cosines against a facet's exact
+  tractions. "plasticity": of an elastic solution beyond a hardness, the difference to the capped one.
 
 Independent sources add in squares; a model's error is no matter of chance, and is added as it is:
 ``total = model form + sqrt(numerical^2 + input^2 + sampling^2)``.
@@ -146,10 +144,7 @@ def _model_form(solution: Solution, derivatives: Sensitivity) -> dict[str, dict[
 def _half_space(
     scene: Scene, solution: Solution, sources: Mapping[str, Mapping[str, float]]
 ) -> dict[str, float]:
-    """Return the excess of the undeformed surfaces' error over "coefficients"; infinite where a solve fails.
-
-    Both describe one cause, from the surfaces between contacts and from those in contact: the larger counts.
-    """
+    """Return what the surfaces' error exceeds "coefficients" by; infinite where a solve fails."""
     try:
         error = half_space_error(scene, solution)
     except NotConverged:
@@ -159,11 +154,7 @@ def _half_space(
 
 
 def _plasticity(scene: Scene, solution: Solution) -> dict[str, float]:
-    """Return the difference of each number to the solution with capped pressures; infinite where none
-    converges.
-
-    Empty where no pressure exceeds the hardness, and where none is given.
-    """
+    """Return differences to the capped solution, infinite where none converges; empty below H."""
     hardness, problem = solution.details.problem.pair.softer_hardness, solution.details.problem
     if hardness is None or solution.max_pressure <= hardness or problem.terms.plastic:
         return {}
@@ -177,10 +168,7 @@ def _plasticity(scene: Scene, solution: Solution) -> dict[str, float]:
 
 
 def _cosines(solution: Solution, derivatives: Sensitivity) -> dict[str, float]:
-    """Change of each number between printed and exact resultants of the same tractions.
-
-    A normal force that the exact sum finds too large or too small is a load misjudged by as much.
-    """
+    """Change of each number between printed and exact resultants; of N, as a misjudged load."""
     exact = facet_resultants(
         solution.pressure, solution.traction, solution.slopes, solution.grid.element_area
     )

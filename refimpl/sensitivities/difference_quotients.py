@@ -31,10 +31,9 @@ _Found = TypeVar("_Found")
 def difference_quotients(
     scene: Scene, solution: Solution, name: str, value: float
 ) -> tuple[dict[str, float], float]:
-    """Return each number's derivative over a parameter by two solves, and how far apart their values are.
+    """Return each number's derivative by two solves, and how far apart their values are.
 
-    The solves are a step to either side, or to one where the other is not allowed. Raises `NotConverged`
-    where one of both solves does not converge, `InputError` where neither side is allowed.
+    Raises `NotConverged` where a solve does not converge, `InputError` where neither side is allowed.
     """
     step, plastic = _stride(scene, solution, name, value), solution.details.problem.terms.plastic
     (low, below), (high, above) = both_sides(
@@ -79,11 +78,7 @@ def solved_again(
 
 
 def _stride(scene: Scene, solution: Solution, name: str, value: float) -> float:
-    """Return the relative step of full solves (see above).
-
-    Numbers that deform a surface about its corner move it farthest at the other border: by no more than a
-    share of its finest length.
-    """
+    """Return the relative step of full solves; it moves a far border by a share of a finest length."""
     sigma = _count_scatter(solution) / solution.contact_area
     stride = float(np.clip((sigma / (2 * math.sqrt(2) * _CUBIC)) ** (1 / 3), *_STRIDES))
     head, _, key = name.rpartition(".")
@@ -104,9 +99,7 @@ def _count_scatter(solution: Solution) -> float:
 
 
 def area_bound(solution: Solution, value: float, span: float) -> float:
-    """Return the 95 % bound of an area's derivative by two solves: elements counted in both, and the cubic
-    term.
-    """
+    """Return the 95 % bound of an area's derivative by two solves: counts, and the cubic term."""
     cubic = _MOST_CUBIC * (0.5 * span / value) ** 2 * solution.contact_area / abs(value)
     return math.hypot(2 * math.sqrt(2) * _count_scatter(solution) / span, cubic)
 
@@ -114,10 +107,9 @@ def area_bound(solution: Solution, value: float, span: float) -> float:
 def both_sides(
     name: str, value: float, step: float, make: Callable[[float], _Found]
 ) -> tuple[tuple[float, _Found], tuple[float, _Found]]:
-    """Return the values a relative step below and above a parameter, each with what is made of it.
+    """Return the values a step below and above a parameter, or the value itself, with what is made.
 
-    Where one side is refused the value itself takes its place. Raises `InputError` where both are, and where
-    the values are one and the same double.
+    Raises `InputError` where both sides are refused, or are one double.
     """
     found: dict[float, _Found] = {}
     for at in (value * (1 - step), value * (1 + step)):

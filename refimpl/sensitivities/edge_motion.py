@@ -40,10 +40,7 @@ class EdgeMotion:
         return near, math.hypot(self.counted * near, near - far)
 
     def _growth(self, pressure: Array, size: int) -> float:
-        """Sum over the edge of the relative change there, less that of all ``size x size`` elements around.
-
-        The difference is blind to pressures that scale as they are, which moves no edge.
-        """
+        """Sum the relative change along the edge, less that of all ``size x size`` elements around."""
         mode = self.fixed.problem.grid.continuation
 
         def ratio(where: Array, width: int) -> Array:

@@ -39,9 +39,7 @@ class Answer:
 def fixed_answer(
     scene: Scene, base: Problem, fixed: FixedContact, name: str, value: float, excess: float
 ) -> Answer:
-    """Return the answer to a parameter; its friction is without tau on the mean ``excess`` of the edge
-    (m^2).
-    """
+    """Return the answer to a parameter; friction without tau on the mean ``excess`` (m^2)."""
     (low, below), (high, above) = both_sides(
         name,
         value,

@@ -63,9 +63,7 @@ class FixedContact:
         return self._state(problem, pressure, approach)[2]
 
     def residual(self, problem: Problem, pressure: Array, approach: float) -> Array:
-        """Return the misfit of Eq. (6) on the set over the base approach, then that of the load over the
-        load.
-        """
+        """Return the misfit of Eq. (6) over the base approach, then that of the load over the load."""
         u, K, forces = self._state(problem, pressure, approach)
         misfit = (u + K * (problem.gap - approach))[self.free] / self.approach
         return np.append(misfit, forces.normal / (problem.load or forces.normal) - 1)
@@ -87,11 +85,7 @@ class FixedContact:
         return LinearResponse(*self._unpacked(x), left)
 
     def jacobian(self, x: Array) -> Array:
-        """Return ``J x`` by a difference quotient.
-
-        ``x`` holds changes of the pressures on the set in base peaks, then that of the approach in base
-        approaches.
-        """
+        """Return ``J x`` by a difference quotient; x in base peaks, then base approaches."""
         x = np.ravel(x)
         scale = _STEP / max(float(np.abs(x).max()), np.finfo(float).tiny)
         pressure, approach = self._unpacked(scale * x)
@@ -128,11 +122,7 @@ class FixedContact:
         return pressure, self.approach * float(x[-1])
 
     def _state(self, problem: Problem, pressure: Array, approach: float) -> tuple[Array, Array, Forces]:
-        """Return the displacement u (m), product of cosines and forces.
-
-        Facet tractions take the slopes that they leave themselves, and so does plastic indentation: from the
-        base state's, a few times over. Elements at the hardness bear the problem's own.
-        """
+        """Return displacement u (m), product of cosines and forces, slopes repeated for facets and yield."""
         if self.capped.any():
             pressure = np.where(self.capped, problem.cap, pressure)
         traction, slopes = problem.friction.traction(pressure, self.active), self._slopes

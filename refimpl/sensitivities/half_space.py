@@ -60,10 +60,7 @@ class HalfSpaceError:
 
 
 def half_space_error(scene: Scene, solution: Solution) -> HalfSpaceError:
-    """Estimate what the half-space costs approach, N, mu, A, p_max and Q of a solution.
-
-    Costs two solves on the solution's grid. Raises `NotConverged` where one does not converge.
-    """
+    """Estimate by two solves what the half-space costs each number. Raises `NotConverged`."""
     problem = solution.details.problem
     z_lower, z_upper = problem.heights
     first = solution.approach + problem.datum  # from the first contact of the scene as given
@@ -108,24 +105,13 @@ def _solved(scene: Scene, solution: Solution, approach: float | None) -> Solutio
 
 
 def advice(error: HalfSpaceError, solution: Solution) -> str:
-    """Return what to do about the half-space's error: nothing, correct to first order, or finite elements.
-
-    The rule rests on 56 plane contacts solved by finite elements (docs/half-space-limits.md).
-    """
-    size = {
-        name: abs(getattr(solution, name))
-        for name in ("friction_coefficient", "contact_area", "max_pressure")
-    }
+    """Return advice by the rule of docs/half-space-limits.md: keep, correct, or finite elements."""
+    names = "friction_coefficient", "contact_area", "max_pressure", "approach", "normal_force"
+    size = {name: abs(getattr(solution, name)) for name in names}
     size["approach"] = abs(solution.approach + solution.details.problem.datum)
-    size["normal_force"] = abs(solution.normal_force)
     stated = {name: error.stated(name) / value for name, value in size.items() if value}
-    rest = {
-        name: (error.second_order[name] + error.finite_strain[name]) / value
-        for name, value in size.items()
-        if value
-    }
     worst = max(stated, key=lambda name: stated[name])
-    left = max(rest.values())
+    left = max((error.second_order[name] + error.finite_strain[name]) / size[name] for name in stated)
     slope = math.degrees(math.atan(math.sqrt(steepness(solution.details.problem, solution.contact))))
     if slope > JUDGED_TO:
         return f"slopes of {slope:.2g} degrees, beyond the {JUDGED_TO:g} judged: use finite elements"

@@ -12,11 +12,9 @@ constant, and on a grid it is a count. It is found in two ways, and ``tau dA`` i
   over two full solves for each. So it is for all parameters where pressures reach the hardness: there the
   edge has no such growth.
 
-The scatter stated beside a derivative (that of the area through tau beside friction) has in squares:
-elements counted in two solves, the cubic term, the comparison of the edge with 5 x 5 or with 9 x 9 elements,
-for the load and for surfaces the difference of the fixed set's answer and that of the two solves, the
-difference to the same derivative on half the elements along each side, and the number's own error bar, as if
-its error changed by as much while the parameter changes by a factor of e.
+The scatter beside a derivative has in squares (that of the area through tau beside friction): counts in two
+solves, the cubic term, the edge compared with 5 x 5 or 9 x 9 elements, the fixed set's answer against two
+solves, half the elements along each side, and the number's own bar over a factor of e of the parameter.
 """
 
 from __future__ import annotations
@@ -66,10 +64,7 @@ class Sensitivity:
     contact_stiffness: float = math.nan
 
     def relative(self, number: str, parameter: str) -> float:
-        """Return ``(p / q) dq/dp``: the per cents that q changes by for one per cent of p.
-
-        Raises `InputError` for a number that is zero, and for a name that is none.
-        """
+        """Return ``(p / q) dq/dp``; `InputError` for a number that is zero or a name that is none."""
         require_one_of("number", number, self.derivatives)
         require_one_of("parameter", parameter, self.parameters)
         derivative, found = self.derivatives[number][parameter], self.found[number]
@@ -111,10 +106,7 @@ def sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = 
 
 
 def grid_sensitivity(scene: Scene, solution: Solution, names: Sequence[str] | None = None) -> Sensitivity:
-    """Return the derivatives of one grid: their scatter lacks the difference to another one.
-
-    Raises as `sensitivity` does for solves that do not converge.
-    """
+    """Return one grid's derivatives, without the scatter between grids. Raises as `sensitivity`."""
     base = solution.details.problem.with_terms(_terms(solution))
     active = solution.contact & ~solution.details.excluded
     fixed = FixedContact(base, solution.pressure, active, solution.slopes)
@@ -169,10 +161,7 @@ def _check(scene: Scene, solution: Solution) -> None:
 
 
 def _terms(solution: Solution) -> Terms:
-    """Return the solution's terms, with all that shear moves unless the user forces it out.
-
-    Where two bodies' compliances cancel it is left out of the solve, and comes in with the first change.
-    """
+    """Return the solution's terms, with all that shear moves unless the user forces it out."""
     requested = solution.plan.requested
     coupled, tilted = (choice is not False for choice in (requested.coupled, requested.tilted))
     return replace(solution.details.problem.terms, coupled=coupled, tilted=tilted)
@@ -211,11 +200,9 @@ def _gathered(
 
 
 def friction_slopes(scene: Scene, solution: Solution) -> tuple[float, float]:
-    """Return ``d mu / d tau`` (1/Pa) and ``d mu / d beta`` of the corrected mu at the solution's contact set.
+    """Return ``d mu / d tau`` (1/Pa) and ``d mu / d beta`` of the corrected mu at the contact set.
 
-    Two GMRES solves and no solve of the scene. The motion of the contact's edge is neglected: `sensitivity`
-    includes it. Where all contact is at the hardness, pressures are fixed and the slopes are sums.
-    Both parameters must be positive. Raises as `sensitivity` does.
+    Two GMRES solves; the edge does not move. Contact at the hardness alone has sums. Raises as `sensitivity`.
     """
     base = solution.details.problem.with_terms(_terms(solution))
     active, excess = solution.contact & ~solution.details.excluded, solution.details.features.excess

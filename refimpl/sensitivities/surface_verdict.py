@@ -62,10 +62,7 @@ class SurfaceVerdict:
     evidence: str
 
     def numbers(self) -> dict[str, dict[str, float]]:
-        """Return by number its value, corrected value and stated error with its parts, in its unit.
-
-        The normal force is that at the solution's approach, every other number that under its load.
-        """
+        """Return value, corrected value and stated error by number; N at the approach, others under load."""
         error = self.error
         found = {}
         for name in NUMBERS:
@@ -81,10 +78,7 @@ class SurfaceVerdict:
 
 
 def surface_verdict(scene: Scene, grid: int | tuple[int, int] | None = None) -> SurfaceVerdict:
-    """Solve a scene three times and judge the half-space on its surfaces.
-
-    Raises `InputError` for what `solve` refuses, `NotConverged` where a solve does not converge.
-    """
+    """Solve a scene three times and judge the half-space on it. Raises as `solve`, or `NotConverged`."""
     solution = solve(scene, grid)
     if not solution.converged:
         raise NotConverged(f"the solve ended as {solution.status.value}")

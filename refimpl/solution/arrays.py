@@ -64,10 +64,7 @@ def attributes_of(solution: Record, provenance: Mapping[str, str] | None = None)
 
 
 def as_dataset(solution: Record, provenance: Mapping[str, str] | None = None) -> Any:
-    """Return an `xarray.Dataset`: the fields over x and y (m, element centres), units as attributes.
-
-    Raises `InputError` where xarray is not installed.
-    """
+    """Return an `xarray.Dataset` of the fields over x and y (m); `InputError` without xarray."""
     try:
         import xarray
     except ModuleNotFoundError as missing:

@@ -20,7 +20,6 @@ def cause_of_failure(evidence: Evidence) -> str | None:
 
 
 def _hardness(evidence: Evidence) -> str | None:
-    """Describe a load beyond what pressures up to the hardness carry on the slopes of the last state."""
     most = evidence.problem.largest_load(evidence.state.slopes)
     if evidence.problem.load is None or evidence.problem.load <= most:
         return None
@@ -28,7 +27,6 @@ def _hardness(evidence: Evidence) -> str | None:
 
 
 def _pressure(evidence: Evidence) -> str | None:
-    """Describe a mean pressure beyond the modulus."""
     problem, modulus = evidence.problem, evidence.scene.materials.reduced_modulus
     if problem.load is None or problem.load <= modulus * problem.grid.nominal_area:
         return None
@@ -37,7 +35,6 @@ def _pressure(evidence: Evidence) -> str | None:
 
 
 def _coupling(evidence: Evidence) -> str | None:
-    """Describe a coupling stronger than what the production solver's updates reduce."""
     problem = evidence.problem
     strength = abs(problem.friction.slope * problem.elasticity.coupling_ratio)
     if evidence.plan.method == "dense" or strength <= _STRONG_COUPLING:
@@ -58,7 +55,6 @@ def _tilt(evidence: Evidence) -> str | None:
 
 
 def _excluded(evidence: Evidence) -> str | None:
-    """Describe an active set of tau that is less than half of the contact."""
     excluded, contact = (np.count_nonzero(x) for x in (evidence.state.excluded, evidence.state.contact))
     if 2 * excluded <= contact:
         return None

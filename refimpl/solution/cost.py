@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -18,16 +19,9 @@ class Cost:
 
 def total_cost(costs: Iterable[Cost]) -> Cost:
     """Return the cost of several solves together."""
-    total = Cost(0.0, {}, 0.0, {})
-    for cost in costs:
-        total = Cost(
-            seconds=total.seconds + cost.seconds,
-            applications=_added(total.applications, cost.applications),
-            point_logs=total.point_logs + cost.point_logs,
-            iterations=_added(total.iterations, cost.iterations),
-        )
-    return total
-
-
-def _added(first: Mapping[str, int], second: Mapping[str, int]) -> dict[str, int]:
-    return {key: first.get(key, 0) + second.get(key, 0) for key in {**first, **second}}
+    every, applications, iterations = list(costs), Counter[str](), Counter[str]()
+    for cost in every:
+        applications.update(cost.applications)
+        iterations.update(cost.iterations)
+    seconds, point_logs = sum(cost.seconds for cost in every), sum(cost.point_logs for cost in every)
+    return Cost(seconds, dict(applications), point_logs, dict(iterations))

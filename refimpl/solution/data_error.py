@@ -71,8 +71,7 @@ def unseen_share(z: Array, periodic: bool = False) -> float:
 
 
 def _interpolation_loss(z: Array, periodic: bool) -> float:
-    """Return the mean square gradient of what cubics through every second point miss, over that of all
-    points."""
+    """Return the share of the mean square gradient that cubics through every second point miss."""
     missed = total = 0.0
     for values in (z, z.T):
         if len(values) < _LEAST_POINTS:

@@ -26,21 +26,19 @@ from refimpl.solution.model_warning import Notice
 
 
 class _FromPart:
-    """An attribute that a part holds under the same name."""
+    """An attribute that is read, under its own name, from the part at a dotted path."""
 
-    def __init__(self, part: str) -> None:
-        self._part = part
+    def __init__(self, path: str) -> None:
+        self._path = path
 
     def __set_name__(self, owner: type, name: str) -> None:
-        self._read = attrgetter(f"{self._part}.{name}")
+        self._read = attrgetter(f"{self._path}.{name}")
 
     def __get__(self, details: Any, owner: type) -> Any:
         return self if details is None else self._read(details)
 
 
-def part(path: str) -> Any:
-    """Return an attribute that is read, under its own name, from the part at a dotted path."""
-    return _FromPart(path)
+part: Any = _FromPart  # its instances stand for values of any type
 
 
 class _Parts:
@@ -55,6 +53,8 @@ class _Parts:
     tolerance: float = part("evidence")
     slopes: Slopes = part("evidence.state")
     excluded: Mask = part("evidence.state")
+    plastic: Mask = part("evidence.state")
+    clearance: Array = part("evidence.state")
     grid: Grid = part("evidence.problem")
     friction: FrictionLaw = part("evidence.problem")
 
@@ -74,6 +74,8 @@ class Details(_Parts):
     slope_error : error of flat-surface influence coefficients at this contact's slopes, by Appendix A's table
     tolerance : what the certificate's residuals must meet
     excluded : elements that the rule for tau's active set leaves without adhesive shear
+    plastic : elements at the hardness
+    clearance : ``v - approach`` (m): the gap without the plastic indentation
     friction : the friction law
     """
 
@@ -103,11 +105,6 @@ class Details(_Parts):
         return self.problem.direction
 
     @property
-    def plastic(self) -> Mask:
-        """Elements at the hardness."""
-        return self.state.plastic
-
-    @property
     def separation(self) -> Array:
         """Height of the upper deformed surface over the lower one (m).
 
@@ -115,11 +112,6 @@ class Details(_Parts):
         """
         lower, upper = self.evidence.surfaces
         return upper - lower
-
-    @property
-    def clearance(self) -> Array:
-        """``v - approach`` (m): the gap without the plastic indentation."""
-        return self.state.clearance
 
     @cached_property
     def bounds(self) -> Bounds:

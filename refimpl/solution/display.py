@@ -81,8 +81,7 @@ def verdict_on(solution: Record, name: str) -> str:
 
 
 def rows(solution: Record, table: str) -> list[tuple[str, list[str], str]]:
-    """Return name, number and unit of each number that a table lists; what is plastic only where
-    anything is."""
+    """Return name, number and unit of each number of a table; plastic ones where anything is."""
     return [
         (quantity.label, *number_and_unit(solution, name))
         for name, quantity in QUANTITIES.items()

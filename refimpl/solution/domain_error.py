@@ -37,10 +37,7 @@ def unseen_parts(problem: Problem, state: State, scene: Scene | None) -> Uncerta
 
 
 def _outside(problem: Problem, state: State, scene: Scene) -> float:
-    """Return the share of the contact that the domain cuts off; infinite from half of it on.
-
-    The contact is taken to go on over an area like the domain's, as dense as along the border.
-    """
+    """Return the share that the domain cuts off, as dense as along the border; infinite from half on."""
     grid = problem.grid
     border = grid.on_border(state.contact) if scene.continues else 0
     outside = border / (2 * sum(grid.shape)) * grid.nominal_area / state.contact_area

@@ -91,8 +91,7 @@ class Evidence:
 
     @property
     def own_parts(self) -> Uncertainty:
-        """Parts of the uncertainty that this grid's own solution leaves: iteration, active set, neglected
-        terms."""
+        """Parts of the uncertainty by this grid's own solution: iteration, active set, neglected terms."""
         problem, state = self.problem, self.state
         forces, total = state.forces, float(state.pressure.sum())
         moved = (

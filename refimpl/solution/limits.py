@@ -29,10 +29,7 @@ _RADIUS = 3.0  # elements: whole elements add 0.30 / r to the area of a circle o
 
 
 def model_warnings(evidence: Evidence) -> tuple[ModelWarning | Notice, ...]:
-    """Return a warning for every limit that a solution exceeds, and notes on yield; none without contact.
-
-    The first names why a solve did not converge, if that is known.
-    """
+    """Return the cause of a failure, a warning for every limit exceeded, notes; none without contact."""
     cause = cause_of_failure(evidence)
     first = () if cause is None else (Notice(cause),)
     if not evidence.state.contact.any():
@@ -58,7 +55,6 @@ def model_warnings(evidence: Evidence) -> tuple[ModelWarning | Notice, ...]:
 
 
 def _plastic_notes(evidence: Evidence) -> list[Notice]:
-    """Return notes on a missing hardness and on effects of yield that are not modelled."""
     pair, state = evidence.problem.pair, evidence.state
     area = state.contact_area
     if pair.softer_hardness is None:
@@ -97,8 +93,7 @@ def roughness_slope(scene: Scene, grid: Grid) -> float:
 
 
 def _plasticity(evidence: Evidence) -> ModelWarning | None:
-    """Warn by Eq. (12): ``2.2 rms / length`` is the rms slope of Eq. (9)'s roughness (``sqrt(4.6) =
-    2.14``)."""
+    """Warn by Eq. (12): ``2.2 rms / length`` is the rms slope of Eq. (9) (``sqrt(4.6) = 2.14``)."""
     pair = evidence.problem.pair
     hardness = pair.softer_hardness
     if hardness is None or evidence.problem.terms.plastic:
@@ -164,7 +159,6 @@ def _adhesion(evidence: Evidence) -> Notice | None:
 
 
 def _area_missing(evidence: Evidence, hardness: float) -> str:
-    """Return the text on an elastic area below P / H, the least area at the hardness."""
     least = evidence.state.forces.normal / hardness / evidence.state.contact_area - 1
     return f" (at the hardness A is at least P/H, {least:.1%} more)" if least > 0 else ""
 
@@ -178,8 +172,7 @@ def _slopes(evidence: Evidence) -> list[ModelWarning | None]:
 
 
 def _error_at_slopes(evidence: Evidence) -> SlopeError:
-    """Return the error as quoted by the solution; where the user excluded the slope terms, that of the
-    deformed surfaces."""
+    """Return the error as quoted, or at the deformed surfaces where slope terms are excluded."""
     term = evidence.plan.term("oblique")
     if term.included or term.negligible:
         return evidence.slope_error
@@ -238,7 +231,6 @@ def _expected_size(evidence: Evidence) -> str:
 
 
 def _is_concave(body: Body, sign: int) -> bool:
-    """Return whether its paraboloids together are hollow: a positive radius below, a negative one above."""
     return sign * sum(1 / part.radius for part in body.surface.parts if isinstance(part, Sphere)) > 0
 
 
@@ -257,7 +249,6 @@ def _correlation(evidence: Evidence) -> ModelWarning | None:
 
 
 def _data(evidence: Evidence) -> ModelWarning | None:
-    """Warn that measured heights and arrays are sampled, not averaged."""
     points = max(evidence.problem.grid.spacings) / (evidence.scene.pitch or math.inf)
     text = (
         f"{points:.2g} points of a surface's data per element: points between the elements' centres are not "
@@ -291,10 +282,7 @@ def _active_set(evidence: Evidence) -> ModelWarning | None:
 
 
 def _neglected(evidence: Evidence) -> list[ModelWarning | None]:
-    """Return the neglected terms whose effect, estimated again from the solution, exceeds the demand.
-
-    Without friction the plan may allow more than the demand: a share of the grid's own error.
-    """
+    """Return the neglected terms whose effect, by the solution, exceeds the demand and the budget."""
     demand = max(evidence.plan.demand, evidence.plan.budget)
     return [
         ModelWarning(

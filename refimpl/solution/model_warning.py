@@ -27,9 +27,6 @@ class Limit(StrEnum):
 class ModelWarning(str):
     """A warning: its text, with the ``limit`` that was exceeded, the ``number`` found and the ``allowed``
     one.
-
-    >>> ModelWarning(Limit.RADIUS, 1.5, 3.0, "few elements").number
-    1.5
     """
 
     limit: Limit
@@ -46,11 +43,7 @@ class ModelWarning(str):
 
 
 class Notice(str):
-    """A note of a surface or of the refinement, with the fields of a `ModelWarning` but without numbers.
-
-    >>> Notice("3 points filled in").limit
-    'note'
-    """
+    """A note of a surface or of the refinement, with the fields of a `ModelWarning` but without numbers."""
 
     limit = "note"
     number = None

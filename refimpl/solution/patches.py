@@ -35,10 +35,7 @@ class Patch:
 
 
 def patches_of(pressure: Array, plastic: Mask, grid: Grid) -> tuple[Patch, ...]:
-    """Return the patches of a pressure (Pa) of the grid's shape; ``plastic`` marks elements at the hardness.
-
-    Patches of a periodic domain go on beyond its border, and so do their centres.
-    """
+    """Return the patches of a pressure (Pa), across a periodic border too; ``plastic`` marks H."""
     labels = patch_labels(pressure > 0, periodic=grid.periodic).ravel()
     f = pressure.ravel()
     count = np.bincount(labels)[1:]

@@ -26,8 +26,7 @@ _LENGTHS = ("correlation_length", "short_cut")  # roughness of longer ones is a 
 
 
 def notes(solved: Evidence) -> tuple[Notice, ...]:
-    """Return the notes of implausible inputs and of surfaces; unresolved roughness has a named warning of its
-    own."""
+    """Return notes of implausible inputs and of surfaces, but those with a warning of their own."""
     scene, grid = solved.scene, solved.problem.grid
     parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
     lines = (*implausible(scene, solved.plan), *scene.notes(grid))
@@ -100,17 +99,11 @@ def _surface(name: str, scene: Scene) -> Iterator[str]:
 
 def _index(scene: Scene, plan: Plan) -> Iterator[str]:
     """Yield the plasticity index of Eq. (12), by the expected contact's slopes of random roughness."""
-    bodies = (scene.lower.material, scene.upper.material)
-    hardness = min((m.hardness for m in bodies if m.hardness is not None), default=None)
-    squares = 0.0
-    for name in ("lower", "upper"):
-        for part in scene.parts(name):
-            if isinstance(part, GaussianRoughness | SelfAffineRoughness):
-                squares += part.rms_slope**2
-    if hardness is None or squares == 0:
+    hardness, parts = scene.materials.softer_hardness, (*scene.parts("lower"), *scene.parts("upper"))
+    rough = [part for part in parts if isinstance(part, GaussianRoughness | SelfAffineRoughness)]
+    if hardness is None:
         return
-    compliance = sum(0.0 if m.is_rigid else (1 - m.nu**2) / m.E for m in bodies)
-    index = math.sqrt(squares) / (compliance * hardness)
+    index = scene.materials.reduced_modulus / hardness * math.hypot(*(part.rms_slope for part in rough))
     if index > _INDEX:
         yield (
             f"plasticity index {index:.3g} is beyond {_INDEX:g}: units of E, hardness, rms and correlation "

@@ -31,8 +31,7 @@ def own_parts(solution: Numbers, quantity: Quantity) -> float | None:
 
 
 def _mean_pressure_error(solution: Numbers, quantity: Quantity) -> float | None:
-    """Return the force on the area: ``(P + dP) / (A - dA) - P / A``, with dP / P of N; unbounded where A
-    is."""
+    """Return ``(P + dP) / (A - dA) - P / A``, with dP / P of N; unbounded where A is."""
     area, force = solution.error("contact_area"), solution.error("normal_force")
     if area is None or force is None:
         return None
@@ -58,11 +57,9 @@ def _area_share_error(solution: Numbers, quantity: Quantity) -> float | None:
 
 
 def _mean_gap_error(solution: Numbers, quantity: Quantity) -> float | None:
-    """Return the bar of the bodies' distance, and the share of the displacements by which N is uncertain.
+    """Return the approach's bar, and the share of the displacements by which N is uncertain.
 
-    The distance is open as the approach is; mean displacements are in proportion to N and less than the
-    approach. Judged on 16 scenes of the kinds of the error bars on 48 and 96 against 384: all 32 covered, the
-    worst at 0.40 of the bar.
+    Judged on 16 scenes on 48 and 96 against 384: all 32 covered, the worst at 0.40 of the bar.
     """
     approach, force = solution.error("approach"), solution.error("normal_force")
     if approach is None or force is None:
@@ -71,7 +68,6 @@ def _mean_gap_error(solution: Numbers, quantity: Quantity) -> float | None:
 
 
 def _mean(pressure: Array) -> float:
-    """Average over the elements in contact; 0 without contact."""
     touching = pressure[pressure > 0]
     return float(touching.mean()) if touching.size else 0.0
 
@@ -179,10 +175,7 @@ class Numbers:
         return {**parts, **{name: {"discretisation": None} for name in unknown if name in parts}}
 
     def error(self, name: str) -> float | None:
-        """Return the error bar of a number, in its unit; inf where unbounded, None where no rule gives one.
-
-        Raises `InputError` for an unknown name.
-        """
+        """Return a number's error bar; inf where unbounded, None without a rule. Raises `InputError`."""
         require_one_of("error", name, QUANTITIES)
         quantity = QUANTITIES[name]
         return None if quantity.rule is None else quantity.rule(self, quantity)

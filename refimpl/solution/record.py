@@ -27,6 +27,7 @@ class _Fields(Numbers):
     slopes: Slopes = part("details.state")
     certificate: Certificate = part("details.state")
     grid: Grid = part("details.problem")
+    status: Status = part("details")
     plan: Plan = part("details")
     cost: Cost = part("details")
 
@@ -43,11 +44,6 @@ class Record(_Fields):
     def __getstate__(self) -> dict[str, Any]:
         _ = self.uncertainty, self.warnings
         return vars(self)
-
-    @property
-    def status(self) -> Status:
-        """Status with which the solve ended."""
-        return self.details.status
 
     @cached_property
     def warnings(self) -> tuple[ModelWarning | Notice, ...]:
@@ -80,6 +76,5 @@ class Record(_Fields):
 
     @property
     def converged(self) -> bool:
-        """True if the loops ended well and the certificate holds; an alternating contact edge is certified
-        too."""
+        """True if the loops ended well and the certificate holds, with an alternating edge or without."""
         return self.status in (Status.CONVERGED, Status.CYCLED)

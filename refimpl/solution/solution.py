@@ -77,10 +77,7 @@ class Solution(Record):
         return patches_of(self.pressure, self.details.plastic, self.grid)
 
     def to_xarray(self) -> Any:
-        """Return an `xarray.Dataset` of the fields: coordinates in m, units and numbers as attributes.
-
-        Raises `InputError` where xarray is not installed.
-        """
+        """Return an `xarray.Dataset`: units and numbers as attributes; `InputError` without xarray."""
         return as_dataset(self)
 
     def __str__(self) -> str:
@@ -138,9 +135,5 @@ def assemble(
     shortfall: Notice | None = None,
     cost: Cost | None = None,
 ) -> Solution:
-    """Return the solution of a solved problem.
-
-    ``grids`` are the features that error bars come from, of this grid alone by default. ``shortfall`` says
-    why a requested accuracy was not reached; ``cost`` is that of all grids.
-    """
+    """Return the solution of a solved problem, with the features and the cost of all grids."""
     return Solution(Details(evidence, cost or evidence.cost, tuple(grids), shortfall))

@@ -60,10 +60,7 @@ class Trace:
 
 
 def solve_paper(problem: Problem, tolerance: float, counter: Counter) -> tuple[State, Trace]:
-    """Return the certified state and the finest grid's trace.
-
-    ``tolerance`` is that of the load; the pressure's is a tenth of it.
-    """
+    """Return the certified state and the finest grid's trace, to a tolerance of the load."""
     pressure: Array | None = None
     approach = problem.approach
     traces: list[Trace] = []
@@ -129,7 +126,6 @@ class _Scheme:
         self._periodic_hat: Array = problem.elasticity.symbol(scipy.fft.rfft2(row).real)
 
     def result(self) -> SolverResult:
-        """Solve the balance under the rule for tau's active set that all solvers share."""
         ended = iterate(self, self.problem, self.tolerance)
         every = (*self.trace.coarser, self.trace)
         counts = {
@@ -155,11 +151,9 @@ class _Scheme:
 
     @property
     def contact(self) -> Mask:
-        """Elements with positive pressure."""
         return self.pressure > 0
 
     def copy(self) -> _Scheme:
-        """Return the scheme as it is: arrays are replaced, never changed."""
         return copy(self)
 
     def restore(self, copied: _Scheme) -> None:
@@ -167,7 +161,6 @@ class _Scheme:
         vars(self).update(vars(copied))
 
     def solve(self, tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
-        """Solve the balance with tau on an active set."""
         self._approach = self.balance(self._approach, active)
         self.traction = active.traction(self.problem.friction, self.pressure, self._last_clearance)
         return self.settled
@@ -245,8 +238,7 @@ class _Scheme:
         return self._clearance
 
     def _iterate(self, u: Array, inside: Mask, *, on_circle: bool) -> Mask:
-        """Run (1b) periodic inversion, or (1c) residual correction, with (1b') exclusion; the contact
-        left."""
+        """Run (1b) periodic inversion or (1c) residual correction, with (1b') exclusion."""
         flexibility = self._apply_periodic if on_circle else self._apply
         pressure = self.pressure * inside
         answer = flexibility(pressure)

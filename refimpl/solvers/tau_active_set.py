@@ -15,12 +15,10 @@ tau need not be the elements in contact. The rule has three steps.
    with tau on all of it. If that is the contact again, the law holds everywhere; if not, the state with tau
    on A is final.
 
-What this means for the user: the set is a property of the grid, the same for every solver, window and start,
-but for elements whose pressure or clearance is so small that a state before the last leaves it undecided.
-If elements are excluded, mu may differ by as much as tau on them over the load, the part ``active set`` of
-its error bar: typically 4e-4 of mu on 128 x 128 elements of random scenes, and 2e-5 for Table 1's ball on 512
-x 512. If none are, the law holds everywhere; other sets may obey it as well, with a mu that differs by up to
-2e-3 of its value on 128 x 128 elements, in one random scene of ten.
+The set is a property of the grid, the same for every solver, window and start, but for elements whose
+pressure or clearance is too small to decide. Excluded elements leave mu open by tau on them over the load,
+the part ``active set`` of its error bar. Without any the law holds everywhere; other sets may obey it too,
+with a mu that differs by up to 2e-3 of its value on 128 x 128 elements, in one random scene of ten.
 """
 
 from __future__ import annotations
@@ -52,33 +50,17 @@ Clearance = Callable[[], Array]
 ContactTest = Callable[[Mask], bool]
 
 
-class ActiveSet(Protocol):
-    """Elements under tau; ``clearance()`` is ``v - approach`` of the present state (m)."""
-
-    @property
-    def is_fixed(self) -> bool:
-        """Return whether shares of tau do not depend on the state."""
-
-    def traction(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
-        """Return r (Pa)."""
-
-    def shear_offset(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
-        """Return ``r - slope f`` (Pa)."""
-
-
 @dataclass(frozen=True, eq=False)
 class FixedSet:
-    """Tau on given elements."""
+    """Tau on given elements: traction r and shear offset ``r - slope f`` (Pa), whatever the state."""
 
     elements: Mask
     is_fixed = True
 
     def traction(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
-        """Return r (Pa)."""
         return law.traction(pressure, self.elements)
 
     def shear_offset(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
-        """Return ``r - slope f`` (Pa)."""
         return law.shear_offset(pressure, self.elements)
 
 
@@ -96,17 +78,19 @@ class GradualSet:
     is_fixed = False
 
     def traction(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
-        """Return r (Pa)."""
         return law.slope * pressure + self.shear_offset(law, pressure, clearance)
 
     def shear_offset(self, law: FrictionLaw, pressure: Array, clearance: Clearance) -> Array:
-        """Return ``r - slope f`` (Pa)."""
         share = np.clip(1 - clearance() / self.reach, 0.0, 1.0)
         share[pressure > 0] = 1.0
         return share * law.shear_offset(pressure, share > 0)
 
 
-def first_set(problem: Problem) -> FixedSet | GradualSet:
+ActiveSet = FixedSet | GradualSet
+"""Elements under tau; ``is_fixed`` if shares do not depend on ``clearance()``, ``v - approach`` (m)."""
+
+
+def first_set(problem: Problem) -> ActiveSet:
     """Return the gradual set of a problem; every element where the law's jump is too small to move any."""
     law, elasticity = problem.friction, problem.elasticity
     ratio = max(abs(elasticity.coupling_ratio), _LEAST_RATIO)
@@ -146,8 +130,7 @@ class TauSolver(Protocol):
     def solve(self, tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
         """Solve with tau on ``active``; return whether the residual meets the tolerance.
 
-        The solver may stop as soon as its contact set is decided, but for a share of it that falls with the
-        tolerance, and passes the test ``enough``.
+        The solver may stop as soon as its contact set is decided and passes ``enough``.
         """
 
     def copy(self) -> Any:
@@ -179,10 +162,7 @@ class TauResult(NamedTuple):
 
 
 def iterate(solver: TauSolver, problem: Problem, tolerance: float) -> TauResult:
-    """Solve by the rule; the solver is left at the last state.
-
-    A state before the last needs only its contact set, so its solve may end early.
-    """
+    """Solve by the rule; states before the last may end early. The solver is left at the last state."""
     first = first_set(problem)
     if isinstance(first, FixedSet):
         solver.solve(tolerance, first)
@@ -210,8 +190,7 @@ def iterate(solver: TauSolver, problem: Problem, tolerance: float) -> TauResult:
 def promising(problem: Problem, operator: Influence, pressure: Array, excluded: Mask, reach: float) -> bool:
     """Return whether tau on the excluded elements as well may leave the contact as it is.
 
-    The gap that it opens takes from each element the pressure that closes it there: all have more. An
-    excluded element with hardly any pressure leaves the contact again by what tau does to the slopes.
+    All have more pressure than closes the gap that it opens, excluded ones than what it does to slopes.
     """
     stiffness = 1 / problem.elasticity.element_compliance(problem.grid)
     held = problem.friction.shear_offset(pressure, excluded)
@@ -223,10 +202,7 @@ def promising(problem: Problem, operator: Influence, pressure: Array, excluded: 
 def _holds_once_more(
     solver: TauSolver, problem: Problem, tolerance: float, active: Mask, reach: float
 ) -> bool:
-    """Try tau on all of the contact; return whether that obeys the law, and restore the solver if not.
-
-    A set that has lost most of the contact is given up otherwise: then it is tried in any case.
-    """
+    """Try tau on all of the contact; return whether that obeys the law, and restore the solver if not."""
     whole = solver.contact
     excluded = whole & ~active
     if not (
@@ -250,5 +226,4 @@ def _loses_most(excluded: Mask, contact: Mask) -> bool:
 
 
 def _loses(active: Mask) -> ContactTest:
-    """Return the test whether elements of an active set are not in contact."""
     return lambda contact: bool(np.any(active > contact))

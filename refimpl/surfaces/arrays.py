@@ -16,10 +16,7 @@ _SPANS = 1e-6  # relative, between the array's stated size and the domain: round
 
 
 def checked(data: Any) -> Array:
-    """Return a copy of the heights (m) that cannot be written to.
-
-    Raises `InputError` unless they are a 2-D array of finite real numbers; masked ones count as not finite.
-    """
+    """Return a read-only copy of the heights (m); `InputError` for no 2-D array of finite numbers."""
     if not isinstance(data, np.ndarray) or data.ndim != 2 or data.size == 0:
         raise InputError("heights", getattr(data, "shape", data), _ALLOWED)
     if data.dtype.kind not in "fiu":
@@ -38,10 +35,9 @@ def checked(data: Any) -> Array:
 
 
 def sampled(data: Array, grid: Grid, offset: tuple[float, float]) -> Array:
-    """Return the heights (m) of ``data``, which spans the grid's domain, at the element centres.
+    """Return the heights (m) of ``data`` at the element centres: copied, or resampled bicubically.
 
-    ``data`` of the grid's shape is copied; other data are resampled bicubically. Raises `InputError` for
-    fewer than four points an axis, and for an offset (m) that leaves the domain unless the grid is periodic.
+    Raises `InputError` for fewer than four points an axis, and an offset (m) out of a free domain.
     """
     if data.shape == grid.shape and offset == (0.0, 0.0):
         return data.copy()
@@ -68,23 +64,6 @@ def check_domain(
         own = tuple(n * edge for n, edge in zip(shape, pixel, strict=True))
         found = f"array of {size_text(own)} m on a domain of {size_text(lengths)} m"
         raise InputError("pixel", found, "a domain that the array spans: it is never squeezed")
-
-
-def sampling_note(shape: tuple[int, ...], grid: Grid) -> str:
-    """Return how data of that shape are used on a grid, as a sentence."""
-    if shape == grid.shape:
-        return f"the array of {size_text(shape)} heights is used as it is"
-    return f"the array of {size_text(shape)} heights is resampled bicubically to {grid}"
-
-
-def interpolation_notes(shape: tuple[int, ...], grid: Grid) -> tuple[str, ...]:
-    """Return the warning for an array that is coarser than the grid; empty where it is not."""
-    if all(points >= n for points, n in zip(shape, grid.shape, strict=True)):
-        return ()
-    return (
-        f"the grid of {grid} is finer than the array of {size_text(shape)} heights: "
-        "what lies between them is interpolated",
-    )
 
 
 def _refuse_leaving(grid: Grid, offset: tuple[float, float]) -> None:

@@ -12,10 +12,9 @@ MEMORY = 32
 
 
 def resample(data: Array, x: Array, y: Array) -> Array:
-    """Return the values at all pairs of ``x``, ``y``, shape ``(len(x), len(y))``.
+    """Return the values at all pairs of ``x``, ``y``, ``(len(x), len(y))``.
 
-    ``data[i, j]`` sits at ``(i, j)`` (pixel units), at least four points an axis; beyond the outermost points
-    the spline's end piece goes on. Only the points the spline can remember are used.
+    ``data[i, j]`` sits at ``(i, j)``, at least four points an axis; end pieces go on beyond the outermost.
     """
     rows, columns = _reach(x, data.shape[0]), _reach(y, data.shape[1])
     along_x = _spline(data[rows, columns], x - rows.start)

@@ -20,9 +20,6 @@ def surface_from_dict(table: dict[str, Any], folder: Path = Path(), place: str =
     """Return the surface of one table ``{"kind": ..., ...}``; paths in it are relative to ``folder``.
 
     Raises InputError naming the key that is unknown, missing or out of range, after the table's ``place``.
-
-    >>> surface_from_dict({"kind": "sphere", "radius": 0.14})
-    Sphere(radius=0.14)
     """
     if not isinstance(table, dict):
         raise InputError(place, table, 'a table with a "kind"')

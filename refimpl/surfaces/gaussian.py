@@ -22,11 +22,11 @@ from typing import ClassVar, NoReturn
 import numpy as np
 import scipy
 
-from refimpl.errors import InputError, require_number, require_size, size_text
+from refimpl.errors import InputError, keep_doubles, require_number, require_size, size_text
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.lay import Lay
 from refimpl.surfaces.noise_lattice import DECAY, NoiseLattice
-from refimpl.surfaces.surface import Detail, Surface, finite, positive, require_seed
+from refimpl.surfaces.surface import Detail, Surface, require_seed
 from refimpl.surfaces.waves import PeriodicLattice, rotated
 
 RESOLVED = 4.0  # elements per correlation length from which slopes count as resolved
@@ -67,15 +67,14 @@ class GaussianRoughness(Surface):
 
     def __post_init__(self) -> None:
         require_size("rms", self.rms, "a positive rms height in m")
-        object.__setattr__(self, "rms", float(self.rms))
         object.__setattr__(self, "correlation_length", _lengths(self.correlation_length))
         object.__setattr__(self, "seed", require_seed(self.seed))
         if not isinstance(self.normalise, bool):
             raise InputError("normalise", self.normalise, _ALLOWED_FLAG)
-        object.__setattr__(self, "lay", finite("lay", self.lay, "a finite angle in rad"))
+        require_number("lay", self.lay, "a finite angle in rad")
         level = "a level of the autocorrelation between 0 and 1"
         require_number("acf_level", self.acf_level, level, above=0, below=1)
-        object.__setattr__(self, "acf_level", float(self.acf_level))
+        keep_doubles(self, "rms", "lay", "acf_level")
 
     @cached_property
     def ellipse(self) -> Lay:
@@ -139,7 +138,6 @@ class GaussianRoughness(Surface):
         return NoiseLattice(self.ellipse, self._refused)
 
     def _waves(self, x: Array, y: Array, grid: Grid) -> Array:
-        """Return periodic heights (m) of two lengths."""
         lattice = self._wave_lattice(grid)
         scale = self.rms / math.sqrt(lattice.mean_squares(self._amplitude)[0])
         return scale * lattice.field(self._amplitude, self.seed, x, y)
@@ -170,8 +168,7 @@ class GaussianRoughness(Surface):
         return self.rms / self._realised_rms(grid) if self.normalise else 1.0
 
     def _realised_rms(self, grid: Grid) -> float:
-        """Return the standard deviation (m) of the unscaled field over the domain: Gauss-Legendre with 10
-        points on each panel of at most half a correlation length (error < 1e-12, by halving the panels)."""
+        """Return the domain's standard deviation (m): 10 Gauss points per half length (error < 1e-12)."""
         lengths = self.ellipse.on_axes
         for side, length in zip(grid.lengths, lengths, strict=True):
             if side < length:
@@ -228,13 +225,12 @@ class GaussianRoughness(Surface):
 
 
 def _lengths(given: object) -> float | tuple[float, float]:
-    """Return the correlation length, or both, as doubles."""
     if isinstance(given, list | tuple):
         if len(given) != 2:
             raise InputError("correlation_length", given, _ALLOWED_LENGTH)
-        along, across = (positive("correlation_length", length, _ALLOWED_LENGTH) for length in given)
+        along, across = (require_size("correlation_length", length, _ALLOWED_LENGTH) for length in given)
         return along, across
-    return positive("correlation_length", given, _ALLOWED_LENGTH)
+    return require_size("correlation_length", given, _ALLOWED_LENGTH)
 
 
 def _panels(side: float, length: float) -> int:

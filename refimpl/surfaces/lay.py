@@ -15,11 +15,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Lay:
-    """Lengths ``along`` and ``across`` (m, or ratios), and the angle from x to the direction along (rad).
-
-    >>> Lay(3.0, 2.0, 0.0).sheared
-    (3.0, -0.0, 2.0)
-    """
+    """Lengths ``along`` and ``across`` (m, or ratios), and the angle from x to the direction along (rad)."""
 
     along: float
     across: float

@@ -51,10 +51,7 @@ class NoiseLattice:
     refuse: Callable[[float, str], object]
 
     def field(self, seed: int, x: Array, y: Array, periods: tuple[float, float] | None) -> Array:
-        """Return the field at all pairs of ``x`` and ``y`` (m).
-
-        With ``periods`` (m) the field is another one, which repeats with them; isotropic lengths only.
-        """
+        """Return the field at all pairs of x and y (m), or an isotropic one that repeats with ``periods``."""
         period_x, period_y = periods or (None, None)
         _, shear, _ = self.ellipse.sheared
         nodes_y, smooth_y = self.smoothing(y, 1, period_y)
@@ -80,8 +77,7 @@ class NoiseLattice:
     def smoothing(
         self, x: Array, axis: int, period: float | None = None
     ) -> tuple[range, scipy.sparse.csr_array]:
-        """Return the nodes that the sum needs along one axis of the sheared coordinates, and the kernel as a
-        matrix S, ``(len(x), nodes)``.
+        """Return the nodes along one sheared axis, and the kernel as a matrix S, (len(x), nodes).
 
         The field is ``S_x w S_y^T``: the exact correlation along an axis, in the ensemble, is ``S S^T``.
         """
@@ -123,7 +119,6 @@ def _spacing(length: float, period: float | None) -> float:
 
 
 def _images(ratio: float) -> float:
-    """Return ``sum over m of exp(-2.3 (m side / l)^2)``, ratio = side / l >= 1: one axis's variance with
-    images."""
+    """Return ``sum_m exp(-2.3 (m ratio)^2)``, ratio = side / l >= 1: a variance with images."""
     m = np.arange(1, 6)  # the sixth image would add exp(-2.3 * 36) = 1e-36
     return float(1.0 + 2.0 * np.exp(-DECAY * (m * ratio) ** 2).sum())

@@ -32,10 +32,10 @@ from typing import Any, ClassVar, NoReturn
 import numpy as np
 import scipy
 
-from refimpl.errors import InputError, require_number, require_size
+from refimpl.errors import InputError, keep_doubles, require_number, require_size
 from refimpl.grid import Array, Grid
 from refimpl.surfaces.lay import Lay
-from refimpl.surfaces.surface import Detail, Surface, finite, require_seed
+from refimpl.surfaces.surface import Detail, Surface, require_seed
 from refimpl.surfaces.waves import ROUNDING, PeriodicLattice, rotated
 
 RESOLVED = 4.0  # elements per shortest wave from which slopes count as resolved
@@ -82,9 +82,8 @@ class SelfAffineRoughness(Surface):
         if not self.roll_off > self.short_cut:
             raise InputError("short_cut", self.short_cut, f"less than roll_off, {self.roll_off:.6g} m")
         require_size("anisotropy", self.anisotropy, "a positive ratio of lengths along and across the lay")
-        finite("lay", self.lay, "a finite angle in rad")
-        for name in ("hurst", "roll_off", "long_cut", "short_cut", "anisotropy", "lay"):
-            object.__setattr__(self, name, float(getattr(self, name)))
+        require_number("lay", self.lay, "a finite angle in rad")
+        keep_doubles(self, "hurst", "roll_off", "long_cut", "short_cut", "anisotropy", "lay")
         object.__setattr__(self, "seed", require_seed(self.seed))
         self._fix_size()
 
@@ -111,10 +110,7 @@ class SelfAffineRoughness(Surface):
         return Lay(self.anisotropy, 1.0, self.lay)
 
     def moment(self, order: int, shortest: float | None = None) -> float:
-        """Return ``(2 pi)^-2 int q^n C d^2q`` of the isotropic PSD with C = 1 (m^2) on its plateau.
-
-        Only waves of at least the ``shortest`` length count, where one is given (m).
-        """
+        """Return ``(2 pi)^-2 int q^n C d^2q``, C = 1 m^2 on the plateau, to the ``shortest`` wave (m)."""
         short = min(self.short_cut if shortest is None else shortest, self.long_cut)
         low, high = 2.0 * math.pi / self.long_cut, 2.0 * math.pi / short
         roll = min(2.0 * math.pi / self.roll_off, high)
@@ -204,9 +200,8 @@ class SelfAffineRoughness(Surface):
     def missed(self, spacing: float) -> tuple[float, float]:
         """Return the shares of rms slope and rms curvature that differences over ``spacing`` (m) miss.
 
-        Central differences see ``sin(q h cos t) / h`` of a wave q at the angle t to the axis, second
-        differences ``2 (1 - cos(q h cos t)) / h^2``; squares averaged over t are ``(1 - J0(2qh)) / (2 h^2)``
-        and ``(6 - 8 J0(qh) + 2 J0(2qh)) / h^4``, in place of ``q^2 / 2`` and ``3 q^4 / 8``. Across the lay.
+        These have ``(1 - J0(2qh)) / (2 h^2)`` and ``(6 - 8 J0(qh) + 2 J0(2qh)) / h^4`` of a wave in place of
+        ``q^2 / 2`` and ``3 q^4 / 8``, averaged over angles. Across the lay.
         """
         q, weight = self._quadrature(spacing)
         power, qh = weight * self._shape(q) * q**2, q * spacing
@@ -218,8 +213,7 @@ class SelfAffineRoughness(Surface):
         return 1.0 - math.sqrt(seen / slope), 1.0 - math.sqrt(bent / curvature)
 
     def _quadrature(self, spacing: float) -> tuple[Array, Array]:
-        """Return the points q (rad/m) and weights of an integral over log q: ten Gauss points on panels of an
-        eighth of an octave or, where that is shorter, of half an oscillation of the Bessel functions."""
+        """Return points q (rad/m) and weights over log q: ten Gauss points per eighth of an octave."""
         ends = [2.0 * math.pi / wave for wave in (self.long_cut, self.roll_off, self.short_cut)]
         node, weight = np.polynomial.legendre.leggauss(10)
         points, weights = [], []

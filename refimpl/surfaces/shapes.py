@@ -7,9 +7,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from refimpl.errors import LEAST, InputError
+from refimpl.errors import LEAST, InputError, keep_doubles, require_number
 from refimpl.grid import Array, Grid
-from refimpl.surfaces.surface import Surface, finite
+from refimpl.surfaces.surface import Surface
 
 
 @dataclass(frozen=True)
@@ -39,9 +39,9 @@ class Sphere(Surface):
 
     def __post_init__(self) -> None:
         allowed = f"a length in m, positive for an upper ball, negative for a lower one, from {LEAST} up"
-        if abs(finite("radius", self.radius, allowed)) < LEAST:
+        if abs(require_number("radius", self.radius, allowed)) < LEAST:
             raise InputError("radius", self.radius, allowed)
-        object.__setattr__(self, "radius", float(self.radius))
+        keep_doubles(self, "radius")
 
     def parameters(self) -> dict[str, float]:
         return {"radius": self.radius}
@@ -54,7 +54,6 @@ class Sphere(Surface):
 
 
 def _from_centre(grid: Grid, axis: int) -> Array:
-    """Return the element centres from the domain's centre (m), symmetric to the last bit: ``(2 i + 1 - M) h /
-    2``."""
+    """Return the element centres from the domain's centre (m), symmetric to the last bit."""
     count = grid.shape[axis]
     return np.asarray((2.0 * np.arange(count) + 1.0 - count) * (grid.spacings[axis] / 2.0))

@@ -22,11 +22,7 @@ def skewness(z: Array) -> float:
 
 
 def kurtosis(z: Array) -> float:
-    """Return the fourth central moment over ``rms^4``; 3 for Gaussian heights.
-
-    >>> kurtosis(np.array([[-1.0, 1.0], [1.0, -1.0]]))
-    1.0
-    """
+    """Return the fourth central moment over ``rms^4``; 3 for Gaussian heights."""
     return _moment(z, 4)
 
 
@@ -37,21 +33,13 @@ def slopes(z: Array, spacing: float | tuple[float, float]) -> tuple[Array, Array
 
 
 def rms_slopes(z: Array, spacing: float | tuple[float, float]) -> tuple[float, float]:
-    """Return the root mean squares of ``dz/dx`` and ``dz/dy`` (about 0: a tilt counts).
-
-    On Eq. (9) and spacing h the central difference sees ``(R(0) - R(2h)) / (2 h^2)`` in place of ``-R''(0)``:
-    too little by the fraction ``4.6 (h / l)^2`` of the mean square, to leading order.
-    """
+    """Return the root mean squares of ``dz/dx`` and ``dz/dy`` (about 0: a tilt counts)."""
     along_x, along_y = slopes(z, spacing)
     return float(np.sqrt(np.mean(along_x**2))), float(np.sqrt(np.mean(along_y**2)))
 
 
 def autocorrelation(z: Array, axis: int) -> Array:
-    """Return the mean product of deviations at lags 0, 1, ... along one axis, over the variance;
-    ``(z.shape[axis],)``.
-
-    Each lag averages the pairs that exist (nothing wraps). Heights of no variance give NaN.
-    """
+    """Return mean products at lags 0, 1, ... along an axis, over the variance; nothing wraps."""
     deviations = np.moveaxis(z - np.mean(z), axis, -1)
     n = deviations.shape[-1]
     spectrum = np.fft.rfft(deviations, 2 * n)
@@ -61,11 +49,7 @@ def autocorrelation(z: Array, axis: int) -> Array:
 
 
 def correlation_length(z: Array, spacing: float, level: float = 0.1) -> float | None:
-    """Return the lag (m) where the autocorrelation, averaged over both axes, first falls to ``level``; None
-    if never.
-
-    ``z`` is square; linear between the points.
-    """
+    """Return the lag (m) where the mean autocorrelation of square z first falls to ``level``, or None."""
     mean = (autocorrelation(z, 0) + autocorrelation(z, 1)) / 2.0
     below = np.flatnonzero(mean <= level)
     if len(below) == 0:

@@ -12,9 +12,9 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.errors import InputError, is_whole, require_number, require_size
+from refimpl.errors import InputError, is_whole, require_size, size_text
 from refimpl.grid import Array, Grid
-from refimpl.surfaces.arrays import check_domain, checked, interpolation_notes, sampled, sampling_note
+from refimpl.surfaces.arrays import check_domain, checked, sampled
 
 
 class SurfaceWarning(UserWarning):
@@ -42,11 +42,9 @@ class Detail:
     missed: str = ""
 
     def required(self, accuracy: float) -> float:
-        """Return the elements per length at which central differences see the rms slope too small by
-        ``accuracy``.
+        """Return the elements per length at which differences miss ``accuracy`` of the rms slope.
 
-        A wave q at the angle t to the axis has ``sin(q h cos t) / h`` in place of ``q cos t``: of the mean
-        square slope ``(h curvature / length)^2 / 4`` is missing, of the rms slope half of that.
+        Of the mean square slope ``(h curvature / length)^2 / 4`` is missing.
         """
         return self.curvature / math.sqrt(8.0 * accuracy)
 
@@ -111,15 +109,11 @@ class Surface(ABC):
         return ()
 
     def pitch(self, lengths: tuple[float, float]) -> float | None:
-        """Return the finest distance between data points on a domain of those lengths (m); None for a
-        formula."""
+        """Return the finest distance of data points on such a domain (m); None for a formula."""
         return None
 
     def data_points(self, grid: Grid) -> tuple[Array, tuple[float, float]]:
-        """Return the data's own heights (m; missing ones NaN) on a grid's domain, and their distances (m).
-
-        By default the heights at about the `pitch`.
-        """
+        """Return the data's heights (m; missing: NaN) and distances (m), by default at about the `pitch`."""
         pitch = self.pitch(grid.lengths) or min(grid.spacings)
         counts = [max(2, round(length / pitch)) for length in grid.lengths]
         fine = Grid((counts[0], counts[1]), grid.lengths, grid.periodic)
@@ -234,10 +228,14 @@ class ArraySurface(Surface):
         return sampled(self.data, grid, offset)
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
-        return sampling_note(self.data.shape, grid), *self.notes(grid)
+        used = "used as it is" if self.data.shape == grid.shape else f"resampled bicubically to {grid}"
+        return f"the array of {size_text(self.data.shape)} heights is {used}", *self.notes(grid)
 
     def notes(self, grid: Grid) -> tuple[str, ...]:
-        return interpolation_notes(self.data.shape, grid)
+        if all(points >= n for points, n in zip(self.data.shape, grid.shape, strict=True)):
+            return ()
+        finer = f"the grid of {grid} is finer than the array of {size_text(self.data.shape)} heights"
+        return (f"{finer}: what lies between them is interpolated",)
 
     def pitch(self, lengths: tuple[float, float]) -> float:
         nx, ny = self.data.shape
@@ -276,24 +274,10 @@ def require_seed(seed: Any) -> int:
     return int(seed)
 
 
-def finite(field: str, value: Any, allowed: str) -> float:
-    """Return ``value`` as a float if it is a finite real number (no text, no truth value); else
-    InputError.
-    """
-    require_number(field, value, allowed)
-    return float(value)
-
-
-def positive(field: str, value: Any, allowed: str) -> float:
-    """Return ``value`` as a float if it is a positive size that arithmetic can bear; else InputError."""
-    require_size(field, value, allowed)
-    return float(value)
-
-
 def pixel_edges(field: str, value: object) -> tuple[float, float]:
     """Return the edges (m) of a pixel from one length or two; else InputError."""
     allowed = "a positive length in m, or two (x, y)"
     pair = tuple(value) if isinstance(value, list | tuple) else (value, value)
     if len(pair) != 2:
         raise InputError(field, value, allowed)
-    return positive(field, pair[0], allowed), positive(field, pair[1], allowed)
+    return require_size(field, pair[0], allowed), require_size(field, pair[1], allowed)

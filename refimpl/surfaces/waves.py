@@ -63,10 +63,7 @@ class PeriodicLattice:
         refuse: Callable[[float, str], object],
         shear: float = 0.0,
     ) -> PeriodicLattice:
-        """Return the torus with its waves down to the ``shortest`` (m) along both axes.
-
-        Calls ``refuse(factor, limit)``, which raises, where they are too many by a factor.
-        """
+        """Return the torus of waves to the ``shortest`` (m); ``refuse(factor, limit)`` where too many."""
         K, L = (P / wave * (1.0 + ROUNDING) for P, wave in zip(periods, shortest, strict=True))
         most = max(2.0 * K + 1.0, 2.0 * L + 1.0)
         if most > MAX_WAVES:

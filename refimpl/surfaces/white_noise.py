@@ -13,8 +13,7 @@ STREAM = 0x726F7567686E6573  # the key's second word, ASCII "roughnes": keeps th
 
 
 def white_noise(seed: int, rows: range, columns: range, stream: int = STREAM) -> Array:
-    """Return independent standard normal numbers at the lattice nodes ``rows x columns``; indices may be
-    negative.
+    """Return independent normal numbers at lattice nodes ``rows x columns``; indices may be negative.
 
     Philox (Salmon et al. 2011) is a function of key and counter, so a tile ``(p, q)`` is drawn without any
     other: key = (seed, stream), counter = (0, 0, p, q). Its raw words are fixed for good, numpy's normal

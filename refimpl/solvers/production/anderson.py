@@ -55,8 +55,7 @@ class AndersonMixing:
         return found
 
     def _append(self, moved: Array, change: Array) -> None:
-        """Add a difference of iterates and of defects to the history, and drop the oldest beyond its
-        depth."""
+        """Add a difference of iterates and of defects; drop the oldest beyond the depth."""
         self._steps.append(moved + MIXING_SHARE * change)
         self._changes.append(change)
         n = len(self._changes)

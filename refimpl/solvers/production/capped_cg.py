@@ -37,27 +37,21 @@ class CappedCG(ProjectedCG):
         self._move_to_cap(pressure >= cap * (1 - VANISHING))
 
     def copy(self) -> Self:
-        """Return CG with a state of its own."""
         other = super().copy()
         other.capped = self.capped.copy()
         return other
 
     @property
     def contact(self) -> Mask:
-        """Free and capped elements."""
         return self.free | self.capped
 
     @property
     def pressure(self) -> Array:
-        """``f`` on the window (Pa)."""
         return self._vectors.scatter(self._pressing) + self._cap * self.capped
 
     @property
     def approach(self) -> float:
-        """The prescribed approach, or the mean of ``v`` weighted by the free pressures (m).
-
-        Where none is free it is the middle between the capped and the unloaded elements.
-        """
+        """The prescribed approach, or the mean ``v`` of free pressures; without any the middle (m)."""
         if self._approach is not None or self._pressing.any():
             return super().approach
         v = self.separation
@@ -68,8 +62,7 @@ class CappedCG(ProjectedCG):
     def residuals(self) -> tuple[float, float]:
         """Return the complementarity gap of both bounds over the elastic energy, and the penetration.
 
-        At a prescribed approach the first is at least the work done by the error of the mean of ``v`` on the
-        free elements, as in the certificate.
+        At an approach the gap is at least the work by the error of the mean of ``v``.
         """
         f, v, approach = self.pressure, self.separation, self.approach
         shares = f / (float(f.sum()) or 1.0)
@@ -86,11 +79,7 @@ class CappedCG(ProjectedCG):
         return max(relative, missed), penetration
 
     def undecided(self, stiffness: float, among: Mask | None = None) -> int:
-        """Return what `ProjectedCG` returns where no pressure is at the cap or near it, else all elements.
-
-        Load that elements at the cap do not bear may bring others into contact, however small the error of
-        the separation on the free ones is.
-        """
+        """Return what `ProjectedCG` does below the cap, else all elements: load may move anywhere."""
         below_cap = not self.capped.any() and bool(self._pressing.max(initial=0.0) < _FULL * self._cap)
         return super().undecided(stiffness, among) if below_cap else self.capped.size
 
@@ -106,8 +95,7 @@ class CappedCG(ProjectedCG):
             self._bear(self._target - inner(self._K, self.pressure))
 
     def _bear(self, missing: float) -> None:
-        """Let the room below the cap bear load that a cut has lost: of free elements, then of the next
-        ones."""
+        """Let the room below the cap bear load that a cut has lost: free elements, then the next."""
         assert self._target is not None
         if missing <= _LOAD_ROUNDING * self._target:
             return
@@ -127,7 +115,6 @@ class CappedCG(ProjectedCG):
         self._separation = None
 
     def _release(self, lifted: Mask) -> None:
-        """Make capped elements free again, with the pressure that they have."""
         if lifted.any():
             pressure = self.pressure
             self.capped &= ~lifted
@@ -185,7 +172,6 @@ class CappedCG(ProjectedCG):
 
     @property
     def _free_target(self) -> float | None:
-        """The load's target for the free elements."""
         if self._target is None:
             return None
         return self._target - self._cap * float(np.sum(self._K * self.capped))
@@ -193,8 +179,7 @@ class CappedCG(ProjectedCG):
     def _scale_to_target(self, *, displace: bool = True) -> None:
         """Scale the free pressures to the load that the capped ones leave, but none beyond the cap.
 
-        Where the capped ones bear more, those of largest ``v`` lose their pressure; where the free ones
-        cannot bear it, all pressures are scaled.
+        Where capped ones bear more, those of largest ``v`` lose pressure; where free ones cannot, all scale.
         """
         assert self._target is not None
         assert self._free_target is not None

@@ -56,8 +56,7 @@ def nested_problems(problem: Problem, above: Shape | None) -> list[Problem]:
 
 
 def _coarser(shape: Shape) -> Shape:
-    """Return half as many elements along each axis, rounded up; of a small grid a quarter if those are
-    enough."""
+    """Return half as many elements per axis, rounded up; of a small grid a quarter, if enough."""
     half = tuple((n + 1) // 2 for n in shape)
     quarter = tuple((n + 1) // 2 for n in half)
     n, m = quarter if max(shape) <= QUARTERED and min(quarter) >= COARSEST else half
@@ -65,8 +64,7 @@ def _coarser(shape: Shape) -> Shape:
 
 
 def coarse_tolerance(shape: Shape) -> float:
-    """Return the residual of a coarse grid, below the error that the next grid's start has from
-    interpolation.
+    """Return the residual of a coarse grid, below the error of the next start's interpolation.
 
     >>> coarse_tolerance((256, 256)), coarse_tolerance((1024, 512))
     (0.001, 0.0005)
@@ -75,8 +73,7 @@ def coarse_tolerance(shape: Shape) -> float:
 
 
 def coarsened(fine: Problem, shape: Shape) -> Problem:
-    """Return the problem on a coarser grid, halved as often as needed: means of four where counts are
-    even."""
+    """Return the problem on a coarser grid, halved as often as needed."""
     while fine.grid.shape != shape:
         n, m = fine.grid.shape
         grid = fine.grid.refined(((n + 1) // 2, (m + 1) // 2))
@@ -92,10 +89,7 @@ def coarsened(fine: Problem, shape: Shape) -> Problem:
 
 
 def winkler_pressure(problem: Problem) -> Array:
-    """Return the pressure of a Winkler foundation at the approach, or under the load (Pa).
-
-    At a prescribed approach it may vanish: a coarse grid's means of the gap can lie above the approach.
-    """
+    """Return a Winkler foundation's pressure at the approach, where it may vanish, or the load (Pa)."""
     load, dA = problem.load, problem.grid.element_area
     depth = problem.approach if problem.approach is not None else _bearing_depth(problem)
     interference = np.maximum(depth - problem.gap, 0.0)
@@ -108,12 +102,9 @@ def winkler_pressure(problem: Problem) -> Array:
 
 
 def _bearing_depth(problem: Problem) -> float:
-    """Return the least depth at which the foundation bears the load (m), of all that are as deep as some
-    element.
+    """Return the least depth of an element at which the foundation bears the load (m).
 
-    Its stiffness is that of a half-space under a load of the contact's width, ``1 / (compliance width)``. On
-    32 x 32 elements 0.6 or 2.5 times the width cost CG a sixth more steps (measured), and contact on 3 of 10
-    elements whatever the load up to twelve times as many (tests).
+    Its stiffness is a half-space's under a contact of that width; 0.6 or 2.5 times cost a sixth more steps.
     """
     assert problem.load is not None
     dA = problem.grid.element_area
@@ -126,10 +117,9 @@ def _bearing_depth(problem: Problem) -> float:
 
 
 def likely_contact(pressure: Array, v: Array, approach: float | None, problem: Problem) -> tuple[Mask, float]:
-    """Return elements in contact after a damped Jacobi step from a prolonged pressure, and the approach (m).
+    """Return the contact after a damped Jacobi step from a prolonged pressure, and the approach (m).
 
-    ``v`` is the prolonged displacement plus the grid's gap (m); its error is of the grid's highest frequency.
-    Without a known approach, the one that keeps the load is found. No operator is applied.
+    ``v`` is the prolonged displacement plus the gap (m). Without an approach the load is kept.
     """
     stiffness = 0.5 / problem.elasticity.element_compliance(problem.grid)
     freed = pressure - stiffness * v
@@ -140,10 +130,7 @@ def likely_contact(pressure: Array, v: Array, approach: float | None, problem: P
 
 
 def likely_capped(pressure: Array, misfit: Array, contact: Mask, problem: Problem) -> Mask:
-    """Return elements of the likely contact that reach the cap in a Jacobi step from a prolonged pressure.
-
-    ``misfit`` is the approach minus ``v`` (m).
-    """
+    """Return the likely contact that a Jacobi step takes to the cap; ``misfit``: approach less v (m)."""
     stiffness = CAPPED_STEP / problem.elasticity.element_compliance(problem.grid)
     return contact & (pressure + stiffness * misfit >= problem.cap)
 
@@ -151,8 +138,7 @@ def likely_capped(pressure: Array, misfit: Array, contact: Mask, problem: Proble
 def _balancing(freed: Array, stiffness: float, total: float) -> float:
     """Return the approach at which ``max(freed + stiffness approach, 0)`` adds up to the total.
 
-    Newton's method with all elements in contact at first. The function is convex, and its slope is the number
-    of elements that press. So steps come from above, and the number falls until it is that of the solution.
+    Newton's method on a convex function, from above: fewer elements press in every step, to the last.
     """
     pressing, fewest = freed, freed.size + 1
     while pressing.size < fewest:
@@ -163,10 +149,7 @@ def _balancing(freed: Array, stiffness: float, total: float) -> float:
 
 
 def sharpened(pressure: Array, misfit: Array, contact: Mask, precondition: Apply, *, loaded: bool) -> Array:
-    """Return a prolonged pressure after one preconditioned step on the finer grid, without an operator.
-
-    ``misfit`` is the approach minus ``v`` of `likely_contact` (m); under a load the step keeps it.
-    """
+    """Return a prolonged pressure after a preconditioned step from ``misfit`` (m), without an operator."""
     residual = _balanced(misfit * contact, contact, loaded)
     step = _balanced(precondition(residual) * contact, contact, loaded)
     raised: Array = (pressure + FIRST_LENGTH * step) * contact

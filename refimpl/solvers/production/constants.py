@@ -68,37 +68,3 @@ PATIENCE = 30  # mixed updates in a row without halving it, before the solve has
 # Plastic indentation and slopes, each from the other between two updates.
 SETTLED = 0.01  # share of the first change that may be left: the updates reduce the rest
 SETTLING_LIMIT = 30  # rounds
-
-# Trials for fewer transforms: work of friction over none, or of a change over none;
-# by scripts that are not kept. Smooth / rough; 40 random contacts to 512 per side (then 2.74 / 2.09):
-# - coupling up to 0.1 lags beside slopes: 2.64 / 2.01, kept
-# - and no update for a scaling to the load that the tolerance allows: 2.56 / 1.95, kept
-# - convergence tested only on elements with tau, once some have left the contact: 11.4 to 9.0 on the
-#   worst scene, kept
-# - updates that reduce the residual by 100 at first, on tau's final set: 2.75 / 2.05
-# - directions of CG kept over updates: 2.91 / 2.14
-# - one step of CG an update, directions kept: 2.85 / 2.21
-# - shares of tau mixed (Anderson) from the first update: 3.11 / 2.28
-# - shares extrapolated (Aitken), element by element: twice the work at 2048
-# - each nested grid reduces its residual by 5 at least: frictionless 16 % less at 2048, 11 % more at 1024
-# Smooth / rough at 512, 1024 and, where named, 2048; 100 random contacts of 256 to 768 per side:
-# - coarse grids beyond 512 to 1e-3 times 512 over their size: 2048: 1.00 / 0.91 frictionless, 0.90 / 0.99
-#   with friction; else 1.00; kept
-# - the same beyond 256: 1024: 1.11 / 1.01 frictionless
-# - tau's shares follow the pressure by the nearest 81 elements, between updates: friction 0.93 / 1.00,
-#   0.94 / 1.00, 0.95 at smooth 2048; 0.97 on random contacts; 40 lines
-# - the same, updates as rare as the feedback allows: 1.00 / 0.97, 1.13 / 1.03; one more of tau's states
-# - conjugacy by the last product, not the last residual: frictionless 0.98 / 1.00, 1.00 / 1.00,
-#   random contacts 0.99
-# - directions of CG kept over updates, conjugate by the last product: friction 1.03 / 1.00, 1.02 / 1.09,
-#   random contacts 1.00
-# - Anderson mixing with the whole defect, from a feedback of 0.1 on: random contacts 1.00
-# - tau's states before the last leave 1e-4 of the contact undecided: friction 0.84 / 1.00, 0.84 / 0.92,
-#   0.79 / 0.89 at 2048; 0.98 on random contacts, 0.85 on those beyond 1024; kept
-# - initial guess, the square root of the interpolated p^2: frictionless 1.51 / 1.00, 1.23 / 1.11
-# - preconditioner with a stencil of three rings of neighbours: frictionless 1.10 / 0.94, 1.09 / 0.95
-# - two levels: long waves by six steps of CG on a grid 4 times coarser, the rest by the symbol:
-#   frictionless 1.49 / 1.01, 1.18 / 0.94, before the coarse grid's own work
-# - single-precision transforms to 1e-4, one convolution more to return: not built: a transform takes 0.43
-#   to 0.63 of the time, and applies to 54 / 55, 39 / 49 % of the work; transforms take 35 / 55, 30 / 61 %
-#   in seconds: 0.9 at best, less with friction

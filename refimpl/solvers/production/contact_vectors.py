@@ -37,8 +37,7 @@ class ContactVectors:
         return field * self._contact if self._index is None else field.take(self._index)
 
     def gather_view(self, field: Array) -> Array:
-        """Return the values to read only, of a field that vanishes elsewhere or is multiplied by one that
-        does."""
+        """Return values to read only, of a field that vanishes elsewhere or meets one that does."""
         return field if self._index is None else field.take(self._index)
 
     def scatter(self, values: Array) -> Array:

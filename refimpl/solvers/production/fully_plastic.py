@@ -17,11 +17,10 @@ _ROUNDING = 1e-12  # relative, of the load of that state
 
 
 def at_hardness(problem: Problem, counter: Counter) -> State | None:
-    """Return the state with every element at the hardness, at the least approach, or None if it carries more.
+    """Return the state with every element at the hardness, or None if it carries more than the load.
 
-    Where it carries the load no element is free, so an iteration has nothing to balance the load with. Where
-    it carries less its certificate says so, and its normal force is what to ask for. It is one of many such
-    states: slopes, and so the load, change with the approach; on a steep ridge others carried 1.2 times more.
+    No element is free to balance the load. Of many such states it has the least approach; where it carries
+    less its certificate says so.
     """
     most = problem.cap * problem.grid.nominal_area
     if problem.load is None or problem.load <= _LEAST_SHARE * most:

@@ -170,8 +170,7 @@ class LaggedTerms:
         self._posed = True
 
     def _target(self, K: Array) -> tuple[float | None, float]:
-        """Return what ``sum K f`` must be for N = P, with the rest of Eq. (2) as it is now; and |N - P| /
-        P."""
+        """Return what ``sum K f`` must be for N = P, with Eq. (2) as it is now; and |N - P| / P."""
         problem, pressure = self._problem, self._cg.pressure
         if problem.load is None:
             return None, 0.0
@@ -187,8 +186,7 @@ class LaggedTerms:
         return max(target, 1e-3 * problem.load / dA), load_error
 
     def _displacements(self) -> tuple[Array, Slopes]:
-        """Return what shear adds to CG's displacement (m), and the slopes of the surface that all tractions
-        leave."""
+        """Return what shear adds to CG's displacement (m), and the slopes under all tractions."""
         problem, operator, elasticity = self._problem, self._operator, self._problem.elasticity
         displacement, pressure = self._cg.normal_displacement, self._cg.pressure
         if not problem.terms.oblique:
@@ -222,8 +220,7 @@ class LaggedTerms:
         return self._problem.elasticity.gap_by_shear(self._operator.shear(traction))
 
     def _shear_of_pressure(self) -> Array:
-        """Return the shear product of the pressure (Pa m), applied once a CG step: afterwards only its scale
-        changes, but under a cap."""
+        """Return the pressure's shear product (Pa m); afterwards only its scale changes, but under a cap."""
         pressure = self._cg.pressure
         total = float(pressure.sum())
         scales = math.isinf(self._problem.cap)
@@ -233,8 +230,7 @@ class LaggedTerms:
         return product if applied in (0.0, total) else (total / applied) * product
 
     def _shear_of_held(self) -> Array | float:
-        """Return the shear product of the shear offset (Pa m), of a linear law applied once for an active
-        set."""
+        """Return the offset's shear product (Pa m), of a linear law once for an active set."""
         law = self._problem.friction
         if law.is_linear and law.jump == 0:
             return 0.0

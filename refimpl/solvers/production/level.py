@@ -81,11 +81,8 @@ class LevelSolver:
         return InitialGuess(self.full(self.cg.pressure), displacement, self.cg.approach, self.needs_mixing)
 
     def result(self, tolerance: float) -> SolverResult:
-        """Solve under the rule for tau's active set.
-
-        Where one of its states meets the window's edge the result is not final: see ``window_too_small``.
-        """
-        ended = iterate(self, self.problem, tolerance)
+        """Solve under the rule for tau's active set; not final where ``window_too_small``."""
+        ended, used = iterate(self, self.problem, tolerance), self.lagged.indentation
         status = ended.status(self._status())
         if self._status() is not Status.CONVERGED and not (ended.settled or self.exhausted or self.stagnated):
             status = Status.ITERATION_LIMIT
@@ -96,12 +93,8 @@ class LevelSolver:
             status=status,
             excluded=self.full(ended.excluded),
             iterations={f"CG at {self.whole.grid}": self.cg_iterations},
-            indentation=self._full_indentation(),
+            indentation=None if used is None else self.full(used),
         )
-
-    def _full_indentation(self) -> Array | None:
-        used = self.lagged.indentation
-        return None if used is None else self.full(used)
 
     def copy(self) -> LevelSolver:
         """Return the solver with a state of its own."""
@@ -118,12 +111,10 @@ class LevelSolver:
 
     @property
     def pressure(self) -> Array:
-        """Present pressure on the window (Pa)."""
         return self.cg.pressure
 
     @property
     def contact(self) -> Mask:
-        """Elements with positive present pressure."""
         return self.cg.pressure > 0
 
     @property
@@ -146,8 +137,7 @@ class LevelSolver:
     def solve(self, tolerance: float, active: ActiveSet, enough: ContactTest | None = None) -> bool:
         """Alternate CG and updates until the residual meets the tolerance, with tau on ``active``.
 
-        Stop as soon as the contact set is decided and passes the test ``enough``: of a gradual set after an
-        update alone, because its shares feed back.
+        Stop as soon as a contact set that passes ``enough`` is decided, of a gradual set after an update.
         """
         # mixing of the shares of tau has no bearing on a fixed set
         mixes = self.needs_mixing if self.lagged.active.is_fixed else self._slopes_need_mixing
@@ -177,11 +167,7 @@ class LevelSolver:
         return not self.stagnated
 
     def _terms_are_current(self, goal: float) -> bool:
-        """Return whether the residual meets the goal for the pressure after its scaling to the load as well.
-
-        The lagged terms are those of the pressure before it. Where they feed back weakly, new ones change the
-        residual by less than the scaling.
-        """
+        """Return whether the residual meets the goal after the scaling to the load as well."""
         return not self.needs_mixing and self.residual + self.lagged.scaling <= goal
 
     def _cg_goal(self, tolerance: float) -> float:
@@ -208,8 +194,7 @@ class LevelSolver:
         return residual
 
     def _contact_suffices(self) -> bool:
-        """Return whether no more than the contact of the active set's elements is asked of this state, and is
-        decided but for a small share."""
+        """Return whether this state needs only a contact set, which is decided but for a small share."""
         if self._enough is None or not self._enough(self.cg.contact):
             return False
         active = self.lagged.active

@@ -101,13 +101,11 @@ def _prolonged(problem: Problem, start: InitialGuess) -> tuple[Window, Array, Ar
 def _operators(
     problem: Problem, window: Window, counter: Counter, tolerance: float
 ) -> tuple[WindowInfluence, Apply]:
-    """Return the influence of a window on itself, and its preconditioner."""
     operator = window_influence(problem.grid, problem.direction, window, counter, tolerance)
     return operator, SpectralPreconditioner(operator, problem.elasticity.symbol(operator.symbol))
 
 
 def _from_winkler(problem: Problem, counter: Counter, tolerance: float) -> LevelSolver:
-    """Return the solver of a grid without an initial guess."""
     operator, precondition = _operators(problem, problem.grid.window, counter, tolerance)
     return LevelSolver(problem, operator, precondition, winkler_pressure(problem))
 
@@ -120,11 +118,7 @@ def certified(problem: Problem, result: SolverResult, counter: Counter) -> State
 
 
 def missed_by_window(problem: Problem, state: State, window: Window, tolerance: float) -> Mask:
-    """Return the elements outside a window or on its edge for which it is too small.
-
-    They penetrate by more than the tolerance; or, with slope terms, they are in contact on the edge, where
-    slopes are one-sided.
-    """
+    """Return elements that penetrate outside a window or, with slopes, are in contact on its edge."""
     missed = state.v < state.approach * (1 - tolerance)
     if problem.terms.oblique:
         missed |= state.contact

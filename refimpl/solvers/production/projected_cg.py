@@ -109,8 +109,7 @@ class ProjectedCG:
         return self._separation
 
     def residuals(self) -> tuple[float, float]:
-        """Return complementarity gap over elastic energy, and penetration over approach, of the fixed
-        problem.
+        """Return gap over elastic energy, and penetration over approach, of the fixed problem.
 
         At a prescribed approach the first is at least the work done by the error of the mean separation.
         """
@@ -125,11 +124,7 @@ class ProjectedCG:
         return contact_residuals(gap, energy, approach, lowest, rounding)
 
     def undecided(self, stiffness: float, among: Mask | None = None) -> int:
-        """Return the number of elements, ``among`` these or all, whose contact the remaining error of the
-        separation can change.
-
-        ``stiffness`` is the pressure per displacement of a single element (Pa/m).
-        """
+        """Return how many elements the error left may move; ``stiffness``: of a single element (Pa/m)."""
         v, approach = self._separate().v, self.approach
         margin = CERTAINTY * float((np.abs(v - approach) * self.free).max())
         pressing = self._vectors.scatter_mask(self._pressing > stiffness * margin)
@@ -137,10 +132,7 @@ class ProjectedCG:
         return int(np.count_nonzero(~certain if among is None else ~certain[among]))
 
     def iterate(self) -> None:
-        """Take one step of projected CG on the contact set, then the exchange of elements.
-
-        At an approach the set may be empty: there is no step then, and elements that penetrate come back.
-        """
+        """Take a step on the contact set, which may be empty at an approach, then exchange elements."""
         if self.free.any():
             self._step()
         self._separation = None
@@ -171,8 +163,7 @@ class ProjectedCG:
         self._norm = float(self._squares.sum())
 
     def _residual_on_contact(self) -> Array:
-        """Return ``K (approach - v)`` on the contact set, at the approach that makes its part along the
-        weights zero."""
+        """Return ``K (approach - v)`` on the contact, by the approach that leaves nothing along K."""
         v, approach = self._separate().on_contact, self._approach
         if approach is None:
             approach = inner(self._squares, v) / self._norm
@@ -202,14 +193,12 @@ class ProjectedCG:
         return direction
 
     def _carried_over(self, quotient: float) -> Array:
-        """Return the last direction times a quotient, on the present contact set."""
         assert self._direction is not None
         direction = quotient * self._direction
         return self._projected(direction) if self._exchanged else direction
 
     def _step_to_trial(self, residual: Array, direction: Array) -> bool:
-        """Take the step to the best point up to the trial, cut and scaled; False if the cut leaves
-        nothing."""
+        """Go to the best point up to the trial, cut and scaled; False if the cut leaves nothing."""
         change = (TRIAL_SHARE * self._length) * direction
         trial = self._pressing + change
         cut: Mask | None = None
@@ -243,7 +232,6 @@ class ProjectedCG:
         self.normal_displacement += moved
 
     def _within_bounds(self, pressing: Array) -> bool:
-        """Return whether pressures on the free elements are allowed."""
         return bool(pressing.min() >= 0)
 
     def _longest_step(self, before: Array, change: Array) -> float:
@@ -264,8 +252,7 @@ class ProjectedCG:
             self._exchanged = True
 
     def _step_then_cut(self, residual: Array, direction: Array) -> None:
-        """Take the step by the exact length along the direction, then cut: two applications, without a
-        trial."""
+        """Take the step by its exact length, then cut: two applications, without a trial."""
         moved = self._apply(self._vectors.scatter(direction))
         length = step_share(residual, direction, self._vectors.gather_view(moved))
         if length:  # zero when the constraint alone fixes the set's pressure

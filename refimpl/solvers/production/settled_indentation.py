@@ -23,9 +23,7 @@ def settled_indentation(
 ) -> tuple[Array | None, Slopes]:
     """Return the plastic indentation and the slopes of the surface that it lowers, each from the other.
 
-    An indentation changes with the cosines by ``approach - h``, and the slopes by its differences: on
-    elements smaller than that depth plain updates of one by the other diverge. They are mixed instead, which
-    takes no transform. ``slopes`` are a first guess.
+    On elements smaller than the depth plain updates diverge; they are mixed, which takes no transform.
     """
     found = indentation(slopes)
     slopes = problem.slopes(lower, upper, found)

@@ -9,10 +9,7 @@ from refimpl.solvers.production.constants import LOAD_SLACK
 
 
 def step_share(residual: Array, change: Array, moved: Array) -> float:
-    """Return the multiple of a change that minimises the energy; 0 where the change has none.
-
-    ``moved`` is the change's displacement. The least pressures are scaled: their products would vanish.
-    """
+    """Return the multiple of a change, which displaces ``moved``, of least energy; 0 for none."""
     curvature = inner(change, moved)
     if curvature == 0:
         change = change / (float(np.abs(change).max()) or 1.0)
@@ -27,11 +24,9 @@ def longest_step(pressure: Array, change: Array) -> float:
 
 
 def cut_at_zero(trial: Array, pressure: Array, change: Array, weights: Array, target: float | None) -> bool:
-    """Cut a trial point at zero, and set ``change`` to ``trial - pressure``; return False if nothing remains.
+    """Cut a trial at zero, set ``change`` to ``trial - pressure``; return False if nothing remains.
 
-    ``weights.trial`` is brought to the target, if there is one. Load that the cut adds is taken from all
-    pressures. A small excess is taken only from those that rise: scaling the others would disturb pressures
-    that have converged.
+    ``weights.trial`` is brought to the target; a small excess is taken from rising pressures alone.
     """
     np.maximum(trial, 0.0, out=trial)
     total = inner(weights, trial)

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import optimize, stats
 
-from refimpl.accuracy.bayesian_line import Bias, Estimate, Prior, fit_line
+from refimpl.accuracy.bayesian_line import Bias, Intercept, Prior, fit_line
 from refimpl.accuracy.digits import bar_of, digits_of, usable, verdict
 from refimpl.accuracy.discretisation_error import AREA
 from refimpl.grid import Array
@@ -20,16 +20,16 @@ from refimpl.grid import Array
 @pytest.mark.parametrize("distance", [0.0, 0.3, 1.0, 1.52, 1.54, 4.0])
 def test_a_bar_is_exceeded_by_5_percent_of_a_normal_distribution(distance: float) -> None:
     """On both sides of 3 deviations, 1.53 spreads, where one side is all that counts."""
-    bar = Estimate(2.0, 0.5).error_bound(2.0 + 0.5 * distance) / 0.5 * stats.norm.ppf(0.975)
+    bar = Intercept(2.0, 0.5).error_bound(2.0 + 0.5 * distance) / 0.5 * stats.norm.ppf(0.975)
     shift = distance * stats.norm.ppf(0.975)
     assert stats.norm.sf(bar - shift) + stats.norm.sf(bar + shift) == pytest.approx(0.05, rel=1e-6)
 
 
 def test_finer_grids_are_foretold_a_nearer_number_and_a_shorter_spread() -> None:
     """By the first and the second of its orders, each in its own way."""
-    still = Estimate(1.0, 0.8, orders=(1.0, 2.0))
+    still = Intercept(1.0, 0.8, orders=(1.0, 2.0))
     assert still.predicted_bound(1.0, 0.25) == pytest.approx(0.05)
-    assert still.predicted_bound(21.0, 0.25) == pytest.approx(Estimate(1.0, 0.05).error_bound(6.0))
+    assert still.predicted_bound(21.0, 0.25) == pytest.approx(Intercept(1.0, 0.05).error_bound(6.0))
 
 
 @pytest.mark.parametrize("grids", [1, 2, 3])
@@ -47,8 +47,8 @@ def test_a_factor_that_is_known_moves_the_number_and_widens_nothing(grids: int) 
 
 @pytest.mark.parametrize("spread", [0.0, 1e-300, math.inf])
 def test_bars_of_extreme_spreads(spread: float) -> None:
-    assert Estimate(2.0, spread).error_bound(3.0) == (math.inf if math.isinf(spread) else 1.0)
-    assert Estimate(2.0, spread).error_bound(2.0) == pytest.approx(spread)
+    assert Intercept(2.0, spread).error_bound(3.0) == (math.inf if math.isinf(spread) else 1.0)
+    assert Intercept(2.0, spread).error_bound(2.0) == pytest.approx(spread)
 
 
 def integrated(values: Array, weights: Array, prior: Prior, bias: Bias) -> tuple[float, float]:

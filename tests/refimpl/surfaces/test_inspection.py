@@ -13,13 +13,13 @@ import scipy
 import refimpl as rf
 from refimpl.measured.areal_parameters import (
     Autocorrelation,
+    core_parameters,
     developed_area,
     height_parameters,
     mean_square_slopes,
     nayak,
 )
 from refimpl.measured.inspection import PARAMETERS
-from refimpl.measured.material_ratio import core_parameters
 from refimpl.measured.roughness_fit import _drawn, _gaussian_psd, _self_affine_psd, fit_roughness
 from refimpl.measured.spectrum import Spectrum
 from refimpl.surfaces import statistics as stats

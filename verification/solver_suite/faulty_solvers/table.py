@@ -143,7 +143,7 @@ def _single(owner: Any, name: str) -> tuple[Any, str, Any]:
     return owner, name, lambda *args: method(*args).astype(np.float32).astype(np.float64)
 
 
-_IN_SINGLE_PRECISION = _single(FFTInfluence, "_convolve"), _single(PeriodicInfluence, "_filter")
+_IN_SINGLE_PRECISION = _single(FFTInfluence, "_convolve"), _single(PeriodicInfluence, "_convolve")
 _APPROACH_REVERSED = "approach", lambda problem, f: -reference_solution.approach_of(problem, f)
 
 FAULTY: dict[Fault, Callable[[], SolverUnderTest]] = {
