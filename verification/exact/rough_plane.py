@@ -62,9 +62,7 @@ def persson_rms_pressure(mean: ArrayLike) -> Array:
     return np.asarray(np.sqrt(square))
 
 
-def greenwood_williamson_area(
-    pressure: ArrayLike, rms: float, density: float, radius: float
-) -> Array:
+def greenwood_williamson_area(pressure: ArrayLike, rms: float, density: float, radius: float) -> Array:
     """Return A/A0 of summits that do not interact, at ``pressure`` over E*, any shape.
 
     ``p/E* = (4/3) eta R^(1/2) sigma^(3/2) F_3/2(d/sigma)``, ``A/A0 = pi eta R sigma F_1(d/sigma)``, with the

@@ -65,10 +65,10 @@ FAULTS = {
     ("fault", "slugs"),
     [
         ("coupling reversed", ("full-contact-sliding", "sliding-wave-shift", "sheared-sphere-shift")),
-        ("one per cent stiffer", ("jgh-approach", "hertz-ellipse-outside")),
-        ("without tau", ("sheared-sphere-shift", "sliding-wave-adhesive")),
-        ("transposed", ("full-contact-sliding",)),
-        ("half an element off", ("full-contact-rough",)),
+        ("one per cent stiffer", ("hertz-ellipse-peak", "square-punch-stiffness", "jgh-approach")),
+        ("without tau", ("sheared-sphere-shift", "coupled-indentation")),
+        ("transposed", ("hertz-ellipse-pressure", "full-contact-sliding")),
+        ("half an element off", ("cone-pressure", "full-contact-rough")),
         ("single precision", ("westergaard-full", "full-contact-rough")),
     ],
 )

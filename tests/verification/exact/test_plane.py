@@ -1,6 +1,8 @@
-"""Westergaard's wave and the sliding wave against their own integral equations."""
+"""Westergaard's wave, the sliding cylinder and the sliding wave against their own integral equations."""
 
 from __future__ import annotations
+
+import dataclasses
 
 import mpmath as mp
 import numpy as np
@@ -9,9 +11,37 @@ from scipy.integrate import quad
 
 from refimpl.errors import InputError
 from verification.exact import westergaard
+from verification.exact.sliding_plane import SlidingCylinder, dundurs
 from verification.exact.sliding_wave import SlidingWave
 
 UNIT = 1 / np.pi  # amplitude that makes p* = 1 with unit modulus and wavelength
+
+
+def equation_residual(contact: SlidingCylinder, x: float) -> float:
+    """The integral equation's misfit at ``x`` (m) in the contact, over its largest term, by mpmath
+    quadrature.
+
+    The principal value is taken by pairing x + s with x - s up to the nearer edge; p is written anew from the
+    exponents.
+    """
+    with mp.workdps(25):
+        g = mp.mpf(1) / 2 - mp.atan(mp.mpf(contact.coupling) * contact.beta) / mp.pi
+        a = mp.sqrt(mp.mpf(contact.line_load) * contact.radius / (mp.pi * contact.modulus * g * (1 - g)))
+        shift = -2 * mp.mpf(contact.radius) * contact.coupling * contact.tau / contact.modulus
+        low, high = shift - 2 * a * (1 - g), shift + 2 * a * g
+
+        def p(s: mp.mpf) -> mp.mpf:
+            height = mp.mpf(contact.modulus) / (2 * contact.radius) * mp.sin(mp.pi * g)
+            return height * max(mp.mpf(0), s - low) ** g * max(mp.mpf(0), high - s) ** (1 - g)
+
+        at = mp.mpf(x)
+        near = min(at - low, high - at)
+        paired = mp.quad(lambda s: (p(at - s) - p(at + s)) / s, [0, near / 2, near])
+        rest = [low, at - near] if at - low > near else [at + near, high]
+        principal = paired + mp.quad(lambda s: p(s) / (at - s), rest)
+        shear = mp.pi * contact.coupling * (contact.tau + contact.beta * p(at))
+        wanted = mp.pi * contact.modulus * at / (2 * contact.radius)
+        return float(abs(principal - shear - wanted) / max(abs(principal), abs(shear), abs(wanted)))
 
 
 def principal_value_residual(contact: SlidingWave, x: float) -> float:
@@ -62,6 +92,42 @@ def test_wave_carries_its_mean_and_reaches_full_contact() -> None:
     np.testing.assert_allclose(almost.pressure(x), full.pressure(x), atol=1e-6)
 
 
+HARD_ON_SOFT = dundurs(lower=(1e9, 0.2), upper=(1e15, 0.3))
+
+
+def cylinder(tau: float = 2e6, beta: float = 0.9) -> SlidingCylinder:
+    return SlidingCylinder(1e5, 0.1, HARD_ON_SOFT[0], HARD_ON_SOFT[1], tau, beta)
+
+
+@pytest.mark.parametrize("place", [-0.97, -0.3, 0.0, 0.6, 0.97])
+def test_sliding_cylinder_satisfies_its_integral_equation(place: float) -> None:
+    contact = cylinder()
+    x = contact.centre + place * contact.half_width
+    # x itself is a double: its rounding is the residual's size
+    assert equation_residual(contact, x) < 1e-14
+
+
+def test_sliding_cylinder_shifts_to_the_trailing_side_of_a_softer_flat() -> None:
+    hard, still = cylinder(tau=0.0), cylinder(tau=0.0, beta=0.0)
+    assert HARD_ON_SOFT[1] > 0
+    assert hard.centre < 0 == still.centre
+    assert hard.pressure_centroid < 0
+    mirrored = dataclasses.replace(hard, coupling=-hard.coupling)
+    assert mirrored.centre == pytest.approx(-hard.centre, rel=1e-14)
+    assert mirrored.pressure(1e-3) == pytest.approx(hard.pressure(-1e-3), rel=1e-13)
+
+
+def test_sliding_cylinder_load_centroid_and_width() -> None:
+    contact = cylinder()
+    ends = contact.centre - contact.half_width, contact.centre + contact.half_width
+    load = quad(contact.pressure, *ends, epsrel=1e-10)[0]
+    first = quad(lambda x: x * contact.pressure(x), *ends, epsrel=1e-10)[0]
+    # scipy's rule on the edges' powers: 1e-7
+    assert load == pytest.approx(1e5, rel=1e-7)
+    assert first / load == pytest.approx(contact.pressure_centroid, rel=1e-6)
+    assert contact.half_width > cylinder(beta=0.0).half_width
+
+
 def wave(tau: float = 0.0, beta: float = 0.8, coupling: float = 0.4, mean: float = 0.3) -> SlidingWave:
     return SlidingWave(mean, UNIT, 1.0, 1.0, coupling, tau, beta)
 
@@ -80,6 +146,18 @@ def test_sliding_wave_without_coupling_is_westergaard() -> None:
     assert contact.contact_fraction == pytest.approx(still.contact_fraction, rel=1e-12)
     x = np.linspace(-0.45, 0.45, 13)
     np.testing.assert_allclose(contact.pressure(x), still.pressure(x), rtol=1e-11, atol=1e-12)
+
+
+def test_a_light_sliding_wave_is_a_sliding_cylinder() -> None:
+    contact = wave(mean=1e-5)
+    radius = 1 / (4 * np.pi**2 * UNIT)
+    round_ = SlidingCylinder(1e-5, radius, 1.0, 0.4, 0.0, 0.8)
+    low, high = contact.edges
+    # the mean of the shear, absent in the periodic problem, tilts by d beta p, so moves by 2 R d beta p
+    moved = 2 * radius * 0.4 * 0.8 * 1e-5
+    # the crest's next order is (a/lambda)^2, some 1e-6 times a factor of ten
+    assert (high - low) / 2 == pytest.approx(round_.half_width, rel=1e-4)
+    assert (high + low) / 2 == pytest.approx(round_.centre + moved, rel=1e-4)
 
 
 def test_a_wave_that_is_not_in_partial_contact_is_refused() -> None:

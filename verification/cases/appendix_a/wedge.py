@@ -8,7 +8,7 @@ from itertools import pairwise, product
 import numpy as np
 
 from appendix_a import wedge
-from appendix_a.wedge import enclosure, printed, reference
+from appendix_a.wedge import enclosure, printed, reference, residues
 from verification.cases import Measured, Unavailable, case
 from verification.exact.wedge_residuals import residuals
 
@@ -86,6 +86,23 @@ def double_precision() -> Measured:
         exact = reference.stresses(r, near, gamma, digits=15).values
         errors.append(departure(r, near, gamma, tuple(map(float, exact))))
     return Measured(value=max(errors), data={"error": errors}, note=f"24 points, seed {SEED}")
+
+
+@case("appendix-wedge/two-precisions", metric="at_most", tolerance=1e-19, source=SOURCE)
+def two_precisions() -> Measured:
+    """Wedge: reference at two precisions and by residues.
+
+    Claim: the hyperbola's integrals to 20 and to 40 digits, and the residue series to 30, agree to 19
+    Tolerance: the coarser run has the tolerance 1e-20
+    """
+    worst = {"20 against 40 digits": 0.0, "residues against 40 digits": 0.0}
+    for r, share, gamma in ((0.8, 1.0, 0.7), (3.0, -0.9, 1.2), (20.0, 0.2, 0.05)):
+        theta = share * (np.pi / 2 - gamma)
+        coarse, fine = (reference.stresses(r, theta, gamma, digits).values for digits in (20, 40))
+        summed = residues.stresses(r, theta, gamma, digits=30)
+        for name, other in zip(worst, (coarse, summed), strict=True):
+            worst[name] = max(worst[name], *(float(abs(o - f)) for o, f in zip(other, fine, strict=True)))
+    return Measured(value=max(worst.values()), data=worst)
 
 
 @case("appendix-wedge/corrected-series", metric="at_most", tolerance=1e-12)

@@ -14,29 +14,23 @@ from numpy.typing import NDArray
 
 import refimpl as rf
 from verification.cases import Measured
+from verification.exact.sliding_plane import dundurs
 from verification.framework.rates import fit_order
-from verification.solver_suite.gaps import centres
 
 Array = NDArray[np.float64]
 Gap = Callable[[Array, Array], Array]
-
-
-def dundurs(lower: tuple[float, float], upper: tuple[float, float]) -> tuple[float, float]:
-    """Return the reduced modulus E* (Pa) and coupling d of two bodies given as ``(E in Pa, nu)``.
-
-    >>> dundurs((1.0, 0.3), (1.0, 0.3))[1], dundurs((1.0, 0.0), (1e30, 0.3))
-    (0.0, (1.0, 0.5))
-    """
-    compliance = sum((1 - nu**2) / E for E, nu in (lower, upper))
-    lower_c, upper_c = ((1 + nu) * (1 - 2 * nu) / (2 * E) for E, nu in (lower, upper))
-    return 1 / compliance, (lower_c - upper_c) / compliance
-
 
 SOFT = (1e9, 0.2)
 """E (Pa) and nu of the lower body where friction couples: Dundurs' constant 0.375 against a rigid body."""
 RIGID = (1e21, 0.2)
 MODULUS, COUPLING = dundurs(lower=SOFT, upper=RIGID)
 """E* (Pa) and d of the pair."""
+
+
+def centres(side: float, M: int) -> tuple[Array, Array]:
+    """Return the element centres from the middle of the square: x ``(M, 1)`` and y ``(1, M)`` (m)."""
+    x = (np.arange(M) + 0.5) / M * side - side / 2
+    return x[:, None], x[None, :]
 
 
 def press(
