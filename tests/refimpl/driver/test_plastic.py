@@ -147,7 +147,7 @@ def test_sensitivities_of_a_capped_solution() -> None:
     scene = replace(ROUGH, friction=rf.Friction(0.0, 0.2))
     s = rf.solve(scene, 32, tolerance=1e-12)
     assert 0.1 < s.plastic_share < 0.9
-    d = rf.sensitivity(scene, s)
+    d = rf.sensitivity(scene, s, ["load", "lower.material.hardness", "lower.material.E"])
     assert d.relative("max_pressure", "lower.material.hardness") == pytest.approx(1.0, rel=1e-9)
     assert d.derivatives["max_pressure"]["load"] == 0
     for name in ("lower.material.hardness", "lower.material.E"):

@@ -103,8 +103,8 @@ def test_flat_rough_planes_determine_a_combination(planes: rf.Scene) -> None:
 
 def test_a_tolerance_adds_to_the_uncertainty(smooth: rf.Scene) -> None:
     """Hertz: A ~ E^(-2/3), so tau found from tau A is off by 2/3 of E's share of the pair's compliance."""
-    rows = _rows(smooth, 0.01, grid=160)  # areas are counted: 48 elements a side err by a tenth
-    found = identify(smooth, rows, 160, tolerances={"lower.material.E": 0.1})
+    rows = _rows(smooth, 0.01, (20.0, 40.0, 80.0), 96)  # areas are counted: 48 elements a side err by a tenth
+    found = identify(smooth, rows, 96, tolerances={"lower.material.E": 0.1}, design=False)
     alone = 0.1 / 1.96 * 2 / 3 * (1 / 118) / (1 / 118 + 1 / 200)
     assert found.shares["input lower.material.E"][0] / 15e6 == pytest.approx(alone, rel=0.1)
 
@@ -113,7 +113,7 @@ def test_a_tolerance_adds_to_the_uncertainty(smooth: rf.Scene) -> None:
     ("friction", "law"), [(rf.Friction(beta=0.2), "Coulomb"), (rf.Friction(tau=15e6), "constant shear")]
 )
 def test_data_of_a_simpler_law_prefer_it(smooth: rf.Scene, friction: rf.Friction, law: str) -> None:
-    rows = _rows(replace(smooth, friction=friction), 0.01)
+    rows = _rows(replace(smooth, friction=friction), 0.01, (10.0, 40.0, 80.0))
     found = identify(_without_friction(smooth), rows, M, design=False)
     (name,), (value,) = zip(*found.laws[0].parameters.items(), strict=True)
     assert found.laws[0].name == law

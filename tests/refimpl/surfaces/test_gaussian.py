@@ -111,7 +111,7 @@ def test_the_rms_of_a_realisation_is_that_of_its_blocks(
 ) -> None:
     surface = replace(unit(normalise=True), **changes)
     whole = surface._realised_rms(grid)
-    monkeypatch.setattr(gaussian, "_BLOCK", 2000)
+    monkeypatch.setattr(gaussian, "_BLOCK", 20_000)
     assert surface._realised_rms(grid) == pytest.approx(whole, rel=1e-12)
 
 

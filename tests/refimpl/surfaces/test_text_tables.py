@@ -66,7 +66,7 @@ def test_points_off_a_grid_are_refused_with_a_number(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("columns", [600, 3])
 def test_a_table_of_text_takes_at_most_four_times_its_numbers(columns: int, tmp_path: Path) -> None:
-    numbers = np.arange(120_000.0).reshape(-1, columns) % 977 / 8
+    numbers = np.arange(360_000.0).reshape(-1, columns) % 977 / 8
     np.savetxt(tmp_path / "a.csv", numbers, fmt="%.3f", delimiter=";")
     tracemalloc.start()
     found = read_table(tmp_path / "a.csv").rows
