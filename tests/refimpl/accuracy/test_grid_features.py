@@ -1,4 +1,4 @@
-"""Features of states by their definitions, turned and moved; numbers at an approach beside Hertz."""
+"""Features of states by their definitions; numbers at an approach by its powers, and without a touch."""
 
 from __future__ import annotations
 
@@ -11,11 +11,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.accuracy.discretisation_error import estimates
-from refimpl.accuracy.first_contact import (
-    at_first_contact,
-    first_contact_bounds,
-    first_contact_error,
-)
+from refimpl.accuracy.first_contact import at_first_contact, first_contact_bounds, first_contact_error
 from refimpl.accuracy.grid_features import GridFeatures, slope_sampling_error
 from refimpl.accuracy.peak import NO_PEAK, Peak, deepest, highest
 from refimpl.driver.reference import solve_reference

@@ -24,7 +24,7 @@ from refimpl.scene.scene_file import read_scene
 from refimpl.sensitivities.sensitivity import friction_slopes
 
 LOADS = 5.0, 10.0, 20.0, 40.0, 80.0
-M = 48
+M = 32
 
 
 def _rows(scene: rf.Scene, relative: float, loads: tuple[float, ...] = LOADS, grid: int = M) -> list[Row]:
@@ -131,7 +131,7 @@ def _yielding(smooth: rf.Scene, hardness: float) -> rf.Scene:
 
 def test_the_hardness_is_given_back_from_a_wrong_guess(smooth: rf.Scene) -> None:
     """p_max of the elastic contact is 0.17 GPa at 70 N: 0.1 GPa yields at the larger loads alone."""
-    loads, grid = (5.0, 20.0, 40.0, 80.0), 32
+    loads, grid = (5.0, 20.0, 40.0, 80.0), 24
     rows = _rows(_yielding(smooth, 100e6), 0.002, loads, grid)
     found = identify(_yielding(_without_friction(smooth), 130e6), rows, grid, fit=["hardness"], design=False)
     hardness = found.values["lower.material.hardness"]
@@ -250,16 +250,15 @@ def test_all_rows_share_the_error_of_an_input() -> None:
 
 def test_a_wrong_row_is_named_and_dropped_and_two_wrong_rows_are_named(smooth: rf.Scene) -> None:
     """Off by 12 standard uncertainties of 1 %, before the uncertainty of the fit to four rows."""
-    grid = M
-    rows = _rows(smooth, 0.01, grid=grid)
+    rows = _rows(smooth, 0.01)
     rows[2] = replace(rows[2], mu=1.12 * rows[2].mu)
-    found = identify(_without_friction(smooth), rows, grid, design=False)
+    found = identify(_without_friction(smooth), rows, M, design=False)
     assert (found.outliers, found.fitted.dropped, found.degrees) == ((2,), 2, 2)
     assert found.values["tau"].value == pytest.approx(15e6, rel=1e-3)
     assert "row 3 (20 N) is off by +" in found.warnings[0]
     assert found.deleted[2] > 6
     rows[4] = replace(rows[4], mu=0.7 * rows[4].mu)
-    both = identify(_without_friction(smooth), rows, grid, design=False)
+    both = identify(_without_friction(smooth), rows, M, design=False)
     assert both.fitted.dropped is None
     assert {2, 4} <= set(both.outliers)
 
@@ -312,10 +311,10 @@ def test_statistics_of_a_surface_cover_a_realisation_that_no_fit_draws() -> None
     pair = replace(scene, lower=replace(scene.lower, surface=replace(rough, seed=77)))
     rows = []
     for load in (2.0, 20.0, 60.0):
-        mu = rf.solve(replace(pair, load=load), 64).friction_coefficient
+        mu = rf.solve(replace(pair, load=load), 48).friction_coefficient
         rows.append(Row(load, mu, 0.001 * mu))
     blind = replace(scene, friction=rf.Friction())
-    found = identify(blind, rows, 64, loads=(2.0,), realisations=3, design=False)
+    found = identify(blind, rows, 48, loads=(2.0,), realisations=3, design=False)
     assert found.values["tau"].low < scene.friction.tau < found.values["tau"].high
     assert found.values["beta"].low < scene.friction.beta < found.values["beta"].high
     assert found.shares["realisations"][0] > found.shares["measurement"][0]

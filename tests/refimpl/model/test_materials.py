@@ -1,4 +1,4 @@
-"""Compliances in exact numbers, the friction law of Eqs (1), (8) and (10), and shear on two bodies."""
+"""Compliances in exact numbers, the friction law of Eqs (1) and (8), and shear on two bodies."""
 
 from __future__ import annotations
 
@@ -10,10 +10,7 @@ import pytest
 import refimpl as rf
 from refimpl.grid import Grid
 from refimpl.model.elasticity import Elasticity
-from refimpl.model.friction import (
-    Friction,
-    is_frictionless,
-)
+from refimpl.model.friction import Friction, is_frictionless
 from refimpl.model.materials import Material, Pair
 from verification.exact.dense_influence import DenseInfluence
 

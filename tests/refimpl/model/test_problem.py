@@ -1,4 +1,4 @@
-"""The discrete problem: slopes of surfaces, exact sums of forces, areas of contact."""
+"""The discrete problem: slopes of surfaces and areas of contact."""
 
 from __future__ import annotations
 
@@ -8,10 +8,7 @@ import numpy as np
 import pytest
 
 from refimpl.grid import Grid
-from refimpl.model.forces import (
-    contact_area,
-    perimeter_corrected_area,
-)
+from refimpl.model.forces import contact_area, perimeter_corrected_area
 from refimpl.model.slopes import Slopes
 
 OBLONG = Grid((9, 6), (2.25, 3.0))

@@ -1,4 +1,4 @@
-"""The spectral preconditioner, alone and continued beyond the contact: symbol, spectrum, steps saved."""
+"""The spectral preconditioner, alone and continued beyond the contact by means of blocks: steps saved."""
 
 from __future__ import annotations
 

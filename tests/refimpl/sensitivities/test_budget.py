@@ -1,4 +1,4 @@
-"""Budgets after V&V 20: what each part is, how parts add, by solutions and by made-up derivatives."""
+"""Budgets after V&V 20: what each part is, how parts add, by solutions and made-up derivatives; heights."""
 
 from __future__ import annotations
 

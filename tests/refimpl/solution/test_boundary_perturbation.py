@@ -1,4 +1,4 @@
-"""First-order recession of undeformed surfaces: closed forms, symmetry, and what must not matter."""
+"""First-order recession of undeformed surfaces: closed forms, symmetry, and the warnings that rest on it."""
 
 from __future__ import annotations
 

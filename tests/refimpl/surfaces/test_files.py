@@ -16,17 +16,7 @@ from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.measured import MeasuredSurface, reader_process, readers
 from refimpl.measured.untrusted import read_untrusted
-from tests.refimpl.surfaces.measured import (
-    DX,
-    DY,
-    NX,
-    NY,
-    RNG,
-    ROUGH,
-    SIDE,
-    write_npy,
-    write_x3p,
-)
+from tests.refimpl.surfaces.measured import DX, DY, NX, NY, RNG, ROUGH, SIDE, write_npy, write_x3p
 
 
 def test_text_with_an_instruments_header_is_scaled_by_it(tmp_path: Path) -> None:

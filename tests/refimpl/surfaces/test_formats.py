@@ -23,16 +23,7 @@ from refimpl.measured import MeasuredSurface
 from refimpl.measured.readers import read
 from refimpl.measured.reading import ALONG_Y, ARRAY, IMAGE
 from tests.refimpl.surfaces import instrument_writers as write
-from tests.refimpl.surfaces.instrument_writers import (
-    BOTH,
-    MAP,
-    NX,
-    NY,
-    PIXEL,
-    Writer,
-    same,
-    sur_bytes,
-)
+from tests.refimpl.surfaces.instrument_writers import BOTH, MAP, NX, NY, PIXEL, Writer, same, sur_bytes
 
 COORDINATES = "coordinates as the file states them"
 SINGLE = 1e-12  # single precision of heights of 2 um, and of SUR's step of 10 nm
@@ -277,7 +268,7 @@ def test_the_librarys_warnings_become_notes(
     assert capfd.readouterr().err == ""
 
 
-# --- holes and levels ---
+# --- arrays beside others, containers, other kinds ---
 
 
 @pytest.mark.parametrize("suffix", [".mat", ".npz"])

@@ -79,7 +79,7 @@ def test_a_sphere_cap(tmp_path: Path) -> None:
     assert sphere.parameters["Sq"] < 1e-6 * found["Sq"]
 
 
-# --- SurfaceTopography ---
+# --- another program ---
 
 
 @pytest.mark.parametrize(

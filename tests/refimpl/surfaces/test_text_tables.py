@@ -1,4 +1,4 @@
-"""Tables of text: separators, missing points, labels, what stands above them, and what is refused."""
+"""Tables of text: points, missing ones, units, what stands above them, and what is refused."""
 
 from __future__ import annotations
 
@@ -14,14 +14,7 @@ from refimpl.measured.readers import read
 from refimpl.measured.reading import IMAGE
 from refimpl.measured.text_tables import read_table
 from tests.refimpl.surfaces import instrument_writers as write
-from tests.refimpl.surfaces.instrument_writers import (
-    BOTH,
-    MAP,
-    NX,
-    NY,
-    PIXEL,
-    same,
-)
+from tests.refimpl.surfaces.instrument_writers import BOTH, MAP, NX, NY, PIXEL, same
 
 
 @pytest.mark.parametrize("name", ["map.xyz", "map.txt"])

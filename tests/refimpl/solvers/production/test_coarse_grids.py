@@ -9,11 +9,7 @@ import refimpl as rf
 from refimpl.grid import Grid, Shape
 from refimpl.model.problem import Problem, Terms
 from refimpl.scene.discretise import discretise
-from refimpl.solvers.production.coarse_grids import (
-    coarsened,
-    nested_problems,
-    winkler_pressure,
-)
+from refimpl.solvers.production.coarse_grids import coarsened, nested_problems, winkler_pressure
 
 SIDE = 2.0**-9
 

@@ -18,11 +18,7 @@ from refimpl.operators.fft import Counter
 from refimpl.operators.influence import window_influence
 from refimpl.operators.preconditioner import Apply
 from refimpl.solvers.production import constants, lagged_terms
-from refimpl.solvers.production.lagged_terms import (
-    couples_weakly,
-    coupling_strength,
-    pressure_compliance,
-)
+from refimpl.solvers.production.lagged_terms import couples_weakly, coupling_strength, pressure_compliance
 from refimpl.solvers.tau_active_set import FixedSet
 from tests.refimpl.solvers.production.levels import BALL, coupled, level_solver, problem_of
 from verification.exact.dense_influence import DenseInfluence
