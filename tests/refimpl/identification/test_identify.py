@@ -19,9 +19,7 @@ from refimpl.identification.forward import COVERAGE, Response
 from refimpl.identification.laws import _law
 from refimpl.identification.profile import Profile
 from refimpl.identification.varying_profile import VaryingProfile
-from refimpl.scene.parameters import with_parameter
 from refimpl.scene.scene_file import read_scene
-from refimpl.sensitivities.sensitivity import friction_slopes
 
 LOADS = 5.0, 10.0, 20.0, 40.0, 80.0
 M = 32
@@ -56,22 +54,6 @@ def test_exact_data_give_the_parameters_back(smooth: rf.Scene) -> None:
     assert found.values["beta"].value == pytest.approx(0.08, rel=1e-2)
     assert found.chi_square < 0.01
     assert found.solves <= 7 * len(LOADS)
-
-
-def test_slopes_are_those_of_finite_differences(smooth: rf.Scene) -> None:
-    scene = replace(smooth, sliding_direction=0.3)
-    solution = rf.solve(scene, M, tolerance=1e-11)
-    for name, step, slope in zip(
-        ("friction.tau", "friction.beta"), (1e3, 1e-5), friction_slopes(scene, solution), strict=True
-    ):
-        value = {"friction.tau": 15e6, "friction.beta": 0.08}[name]
-        ends = [
-            rf.solve(
-                with_parameter(scene, name, value + s * step), M, tolerance=1e-11
-            ).friction_coefficient_corrected
-            for s in (-1, 1)
-        ]
-        assert slope == pytest.approx((ends[1] - ends[0]) / (2 * step), rel=1e-3)
 
 
 def test_the_interval_of_an_inner_optimum_is_the_ellipse() -> None:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from fractions import Fraction
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import pytest
 
 import refimpl as rf
 from refimpl.driver.options import Options
-from refimpl.grid import Array, Grid
+from refimpl.grid import Grid
 from refimpl.model.problem import Terms
 from refimpl.scene.discretise import discretise
 from refimpl.scene.resolution import resolution
@@ -109,34 +109,6 @@ FLAT = Terms(coupled=False, oblique=False, tilted=False)
 ROUGH_FLAT = replace(SMOOTH, lower=rf.Body(SMOOTH.lower.material, rf.GaussianRoughness(1e-6, 4e-4, seed=2)))
 PLANES = rf.read_scene("rough-planes")
 RECTANGLE = Grid((12, 20), (1.2e-3, 2.5e-3))
-
-
-@dataclass(frozen=True)
-class Counted(rf.Sphere):
-    """A ball that counts how often it is sampled, and warns each time."""
-
-    radius: float = 0.14
-    sampled: list[int] = field(default_factory=list)
-    kind: ClassVar[str] = "counted"
-
-    def heights_on(self, grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> Array:
-        self.sampled.append(grid.shape[0])
-        return super().heights_on(grid, offset)
-
-    def notes(self, grid: Grid) -> tuple[str, ...]:
-        return ("counted by hand",)
-
-
-def counted() -> tuple[rf.Scene, list[int]]:
-    ball = Counted()
-    return replace(SMOOTH, upper=rf.Body(SMOOTH.upper.material, ball)), ball.sampled
-
-
-def test_a_solve_on_a_grid_samples_once_and_says_once_what_surfaces_note() -> None:
-    scene, sampled = counted()
-    found = rf.solve(scene, grid=32)
-    assert sampled == [32]
-    assert [str(line) for line in found.warnings].count("counted by hand") == 1
 
 
 def test_heights_of_a_scene_are_its_own() -> None:
