@@ -1,4 +1,4 @@
-"""The contact to expect: elements at an approach, least pressures, symmetries."""
+"""The contact to expect: elements and pressures under a load and at an approach, symmetries."""
 
 from __future__ import annotations
 
@@ -41,12 +41,38 @@ def posed(grid: Grid, gap: Array | None = None, **changes: object) -> Problem:
     return replace(problem, **({} if gap is None else {"gap": gap}), **changes)  # type: ignore[arg-type]
 
 
+def carried(problem: Problem) -> Array:
+    """What the lowest 1, 2, ... elements carry (N), by NumPy's gradients and a full sort."""
+    if problem.grid.periodic:
+        wrapped = np.gradient(np.pad(problem.gap, 1, mode="wrap"), *problem.grid.spacings)
+        x, y = (tangent[1:-1, 1:-1] for tangent in wrapped)
+    else:
+        x, y = np.gradient(problem.gap, *problem.grid.spacings)
+    squares = np.cumsum((x**2 + y**2).ravel()[np.argsort(problem.gap.ravel())])
+    stiffness = 4 * math.sqrt(2) / (3 * math.pi) * problem.pair.reduced_modulus * problem.grid.element_area
+    return np.asarray(stiffness * np.sqrt(squares * np.arange(1, squares.size + 1)))
+
+
+@pytest.mark.parametrize("share", [1e-6, 0.24, 0.26, 1.5])
+@pytest.mark.parametrize("grid", GRIDS, ids=str)
+def test_the_fewest_of_the_lowest_elements_that_carry_the_load_touch(grid: Grid, share: float) -> None:
+    """Whether a quarter of the elements is enough for the load or not."""
+    problem = posed(grid, np.random.default_rng(1).uniform(1e-6, 2e-6, grid.shape))
+    loads = carried(problem)
+    load = share * float(loads[-1])
+    found = expected_contact(replace(problem, load=load))
+    assert found.elements == min(np.searchsorted(loads, load) + 1, grid.elements)
+    assert found.mean_pressure == pytest.approx(load / (found.elements * grid.element_area), rel=1e-12)
+
+
 @pytest.mark.parametrize("approach", [2e-7, 4e-7, 1e-5])
 @pytest.mark.parametrize("grid", GRIDS, ids=str)
 def test_at_an_approach_half_of_the_elements_that_interfere_touch(grid: Grid, approach: float) -> None:
     problem = posed(grid, load=None, approach=approach)
     found, half = expected_contact(problem), max(1, np.count_nonzero(problem.gap < approach) // 2)
     assert half <= found.elements <= half + 7  # of a symmetric ball eight touch at once
+    mean = carried(problem)[found.elements - 1] / (found.elements * grid.element_area)
+    assert found.mean_pressure == pytest.approx(mean, rel=1e-9)
 
 
 @pytest.mark.parametrize("approach", [0.0, -1e-6])
