@@ -61,7 +61,7 @@ def test_the_fewest_of_the_lowest_elements_that_carry_the_load_touch(grid: Grid,
     loads = carried(problem)
     load = share * float(loads[-1])
     found = expected_contact(replace(problem, load=load))
-    assert found.elements == min(np.searchsorted(loads, load) + 1, grid.elements)
+    assert found.elements == min(int(np.searchsorted(loads, load)) + 1, grid.elements)
     assert found.mean_pressure == pytest.approx(load / (found.elements * grid.element_area), rel=1e-12)
 
 

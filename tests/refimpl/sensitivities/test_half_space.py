@@ -253,3 +253,10 @@ def test_the_verdict_has_every_number_its_share_and_its_evidence() -> None:
     assert verdict.evidence.startswith("slopes of 26 degrees")
     assert "beyond 20 degrees" in verdict.evidence
     assert verdict.advice.endswith("use finite elements")
+
+
+def test_a_gentle_surface_keeps_the_half_space() -> None:
+    verdict = surface_verdict(pressed_on_a_flat(crossed_waves(5e-4), COPPER, grid=32), 32)
+    assert verdict.share_above == 0.0
+    assert verdict.advice.startswith("keep the half-space")
+    assert "finer grid" not in verdict.evidence
