@@ -38,7 +38,7 @@ def coverage(documents: Mapping[str, Any]) -> str:
     ]
     text = (
         "Error bars of 95 % on single grids of 48 to 128 elements against 384, on random scenes drawn after "
-        "the constants were fitted (p_max: before its bars became unbounded beside walls). *At worst*: the "
+        "the constants were fitted. *At worst*: the "
         "reference is off by its own bound, against the error bar. *Usable*: the bar is at most half "
         "of the number. *Error bar over error* is a median."
     )
