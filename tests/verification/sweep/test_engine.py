@@ -221,22 +221,6 @@ def test_a_lost_scheduler_is_one_line_and_the_sweep_goes_on_later(tmp_path: Path
     assert (again.found, len(again.rows)) == (kept, kept)
 
 
-@pytest.mark.nightly
-def test_a_cluster_that_has_lost_its_last_worker_is_waited_for(tmp_path: Path) -> None:
-    with cluster(tmp_path) as made, swept_by(made, tmp_path) as child:
-        made.worker.kill()
-        made.worker.wait()
-        time.sleep(2)  # what it had sent is stored
-        kept = finished(tmp_path / "s.sqlite")
-        with pytest.raises(subprocess.TimeoutExpired):
-            child.wait(timeout=5)
-        assert 2 <= finished(tmp_path / "s.sqlite") == kept < 400
-        made.another()
-        _, err = child.communicate(timeout=120)
-    assert (child.returncode, err) == (0, "")
-    assert finished(tmp_path / "s.sqlite") == 400
-
-
 LIMITED = """
 import numpy, scipy.linalg, threadpoolctl, refimpl
 from refimpl.operators.threads import allowed_threads

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import sys
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import refimpl as rf
 from tests.verification.cli.commands import Stream, answer, run, shown
-from verification.cli.sweep import _Line
+from verification.cli.sweep import _Line, directions_note
 from verification.sweep import engine
 from verification.sweep.curves import curves
 from verification.sweep.engine import Progress, Sweep
@@ -85,7 +88,7 @@ def test_runs_that_did_not_converge_are_no_success() -> None:
     assert "2 of 2 runs did not converge" in run("sweep study.toml --csv -").err
 
 
-@pytest.mark.parametrize("status", list(rf.Status))
+@pytest.mark.parametrize("status", [rf.Status.CONVERGED, rf.Status.CYCLED, rf.Status.STAGNATED])
 def test_rows_are_solutions_or_not_by_their_status(
     status: rf.Status, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -105,17 +108,22 @@ def test_rows_are_solutions_or_not_by_their_status(
 
 def test_a_grid_that_is_too_coarse_is_reported() -> None:
     Path("study.toml").write_text(
-        'scene = "table1-rough"\nrealisations = 3\n[vary]\ngrid = 16\n'
-        "load = [1.0, 70.0]\nlower_rms = 0.8e-6\n"
+        'scene = "table1-rough"\nrealisations = 3\n[vary]\ngrid = 16\nlower_rms = 0.8e-6\n'
     )
     assert "points: use a finer grid" in " ".join(shown("sweep study.toml --workers 1").split())
 
 
-@pytest.mark.parametrize("terminal", [True, False])
-def test_progress_is_for_terminals(terminal: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys, "stderr", Stream(terminal))
+def test_progress_counts_failures_and_the_time_that_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stderr", Stream(terminal=True))
     line = _Line()
     line.count(Progress(3, 10, 1, 125.0))
     line.close()
-    written = sys.stderr.getvalue()
-    assert ("[3/10], 1 failed 2 min left" in written) if terminal else written == ""
+    assert "[3/10], 1 failed 2 min left" in sys.stderr.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("turns", "hint"), [((0.0,), False), ((0.0, math.pi), False), ((0.0, 0.785, math.pi), True)]
+)
+def test_directions_without_their_opposite_are_remarked_on(turns: tuple[float, ...], hint: bool) -> None:
+    study: Any = SimpleNamespace(vary={"sliding_direction": turns})
+    assert bool(directions_note(study)) is hint

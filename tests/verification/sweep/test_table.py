@@ -179,7 +179,7 @@ def test_error_and_scatter() -> None:
     assert quality_of([row(0, 0.1, contact_area_error=None)])[1].error == math.inf  # as a store keeps it
 
 
-@pytest.mark.parametrize(("wide", "narrow"), [(1, 1), (2, 1), (3, 2), (1, 2)])
+@pytest.mark.parametrize(("wide", "narrow"), [(2, 1), (1, 2)])
 def test_points_whose_error_exceeds_their_scatter_are_counted(wide: int, narrow: int) -> None:
     """Errors of 10 % at all points; scatter of 71 % at the wide ones and none at the narrow ones."""
     pairs = [(0.1, 0.3)] * wide + [(0.1, 0.1)] * narrow
@@ -235,7 +235,6 @@ def test_means_bars_and_bands_are_in_the_units_of_the_axes(
     ("by", "value", "entry"),
     [
         ("lower_rms", 1.68e-6, "lower rms = 1.68 µm"),
-        ("tau", 15e6, "tau = 15 MPa"),
         ("beta", 0.1, "beta = 0.1"),
         (PATH, "/far/away/b.npy", f"{PATH} = b.npy"),
         ("lower.material.hardness", 4e8, "lower.material.hardness = 400 MPa"),
