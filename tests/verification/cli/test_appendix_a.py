@@ -80,12 +80,12 @@ def test_wedge_of_no_slope_is_the_half_plane() -> None:
     assert found["sigma_r"] == pytest.approx([-0.5 - 1 / math.pi], abs=1e-9)
     assert found["sigma_theta"] == pytest.approx([-0.5 + 1 / math.pi], abs=1e-9)
     assert found["tau_rtheta"] == pytest.approx([0.0], abs=1e-9)
-    for gamma in (0.1, 10.3, 33.3, 70.7):  # an angle on the face is inside
+    for gamma in (0.1, 33.3):  # an angle on the face is inside
         shown(f"{WEDGE} --gamma-deg {gamma} --theta-deg={gamma - 90},{90 - gamma},{round(90 - gamma, 6)}")
 
 
 def test_surface_states_every_numbers_error_and_advises(tmp_path: Path) -> None:
-    command = f"appendix-a surface table1-rough --grid 32 --plot {tmp_path}/map.png"
+    command = f"appendix-a surface table1-rough --grid 24 --plot {tmp_path}/map.png"
     found = answer(command)
     assert found["share_above_2_percent"] == 0.0
     assert found["advice"].startswith("keep the half-space")

@@ -131,31 +131,6 @@ def test_slippy_gives_what_our_solver_gives(periodic: bool) -> None:
     np.testing.assert_allclose(pressure, np.asarray(own(posed).pressure), rtol=0, atol=1e-5 * pressure.max())
 
 
-def test_designs_are_one_row_each_with_their_failures() -> None:
-    def row(number: str, status: str, error: float | None) -> dict[str, Any]:
-        name = f"solver/design-plain-{number}"
-        same = {"tolerance": 1.01, "seconds": 0.5, "residual": error, "note": "why"}
-        return {"id": name, "status": status, "error": error, **same}
-
-    single = {"id": "solver/pins", "status": "pass"}
-    found = table.summarised(
-        [single, row("01", "pass", 0.5), row("02", "fail", 7.0), row("03", "unavailable", None)]
-    )
-    assert found[0] == single
-    assert found[1]["id"] == "solver/design-plain"
-    assert (found[1]["status"], found[1]["error"], found[1]["seconds"]) == ("fail", 7.0, 1.5)
-    assert found[1]["note"] == "fail: 02"
-    assert table.summarised([row("01", "pass", 0.5), row("02", "unavailable", None)])[0]["status"] == "pass"
-
-
-def test_present_code_keeps_to_its_abilities() -> None:
-    """NumPy is always there: a distribution that is installed."""
-    able = Abilities(periodic=False)
-    code = PublishedCode("numpy", "none", "", able, lambda posed: PublishedAnswer(posed.gap, True))
-    with pytest.raises(Unsupported, match="numpy does not offer: periodic"):
-        code(replace(TINY, periodic=True))
-
-
 @pytest.mark.parametrize("name", SMALL)
 def test_closure_is_a_bound(name: str) -> None:
     """Where the mean gap under the pressure is `closure`, the relative gap is at most the tolerance."""
@@ -202,9 +177,7 @@ def test_negative_control_contactmechanics_without_mean_stiffness_stops_at_once(
     pressure = np.asarray(fallen_in.pressure)
     assert fallen_in.converged is True
     assert np.ptp(pressure) < 1e-12 * pressure.max()
-    assert fails(
-        negative_controls.no_mean_stiffness, "solver/westergaard-pressure", "solver/rough-plane"
-    )
+    assert fails(negative_controls.no_mean_stiffness, "solver/westergaard-pressure", "solver/rough-plane")
 
 
 def fails(code: PublishedCode, *cases: str) -> bool:

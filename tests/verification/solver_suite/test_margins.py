@@ -39,9 +39,7 @@ def test_an_honest_answer_at_its_claim_passes_with_its_mean_counted(name: str) -
         return np.asarray(exact + low * exact.mean() * (exact > 0))
 
     for precision in (1e-8, 1e-6):
-        (result,) = run(
-            Limited(lax, replace(own.solve.abilities, precision=precision)), [f"solver/{name}"]
-        )
+        (result,) = run(Limited(lax, replace(own.solve.abilities, precision=precision)), [f"solver/{name}"])
         assert result.error is not None
         assert 0 < result.error < 0.01  # of 2 claims: an error's energy is of second order
 

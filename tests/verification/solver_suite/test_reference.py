@@ -32,7 +32,7 @@ from verification.solver_suite.reference.periodic_bound import periodic_bound
 from verification.solver_suite.reference.posed import _key, problems
 
 E = 2e9
-SMALL = ("pins", "out-of-reach*", "sheared-pins", "capped-pins*", "periodic-elimination")
+SMALL = ("pins", "out-of-reach*", "sheared-pins", "capped-pins*")
 ONLY = [word for name in SMALL for word in ("--only", f"solver/{name}")]
 
 
@@ -53,7 +53,7 @@ def within(found: Certified, exact: Array) -> None:
 
 
 @pytest.mark.parametrize("by_load", [True, False])
-@pytest.mark.parametrize("array", [FREE[0], FREE[2], PERIODIC[0], PERIODIC[2]])
+@pytest.mark.parametrize("array", [FREE[2], PERIODIC[2]])
 def test_pressures_that_were_chosen_lie_within_the_bounds(array: PinArray, by_load: bool) -> None:
     found = certified(problem_of(array, by_load=by_load))
     # the pins' gaps are rounded (1e-16 of 0.5 m), which moves pressures by 1e-12 of the peak
@@ -68,14 +68,14 @@ WAVY = ContactProblem(_lowest(0.01 * waves(16, 5, shortest=4)), 1 / 16, E, appro
 BUMP = ContactProblem(_lowest(rough_bump(8, 1)), 1 / 8, E, approach=0.01)
 
 
-@pytest.mark.parametrize("depth", [-0.016, -0.006, -0.0005])
+@pytest.mark.parametrize("depth", [-0.016, -0.0005])
 def test_at_a_periodic_approach_elimination_lies_within_the_bounds(depth: float) -> None:
     found = certified(replace(WAVY, approach=depth))
     within(found, reference_solution.eliminated(found.problem))
     assert 0 < found.bounds.pressure < 1e-8 * found.pressure.max()
 
 
-@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-8])
 def test_a_loose_solution_lies_within_its_periodic_bounds(tolerance: float) -> None:
     """Its error is large, so that a bound without a margin would show."""
     loose, exact = own.solved(WAVY, tolerance), reference_solution.eliminated(WAVY)
@@ -240,9 +240,7 @@ def test_a_folder_that_holds_something_is_refused(tmp_path: Path, capsys: pytest
     (tmp_path / "mine.txt").write_text("keep")
     only = ["--only", "solver/pins"]
     assert main(["verify", "--export", str(tmp_path), *only]) == 2
-    assert main(["verify", "--export", str(tmp_path / "no" / "such"), *only]) == 2
     assert main(["verify", "--export", str(tmp_path / "x"), "--self-test"]) == 2
-    assert main(["verify", "--export", str(tmp_path / "x"), "--only", "solver/no-such"]) == 2
     assert main(["verify", "--export", str(tmp_path / "x"), "--only", "solver/wide-pins"]) == 2
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
     assert "a new or an empty directory" in capsys.readouterr().err
