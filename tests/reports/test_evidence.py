@@ -8,11 +8,11 @@ import pytest
 
 from reports.agreement import SINGLE, TABLE3
 from reports.claims import NOT_ESTABLISHED, VERDICTS, judged, of_the_conversion, paper, parts
-from reports.evidence import gathered, groups, revisions_of
+from reports.evidence import gathered, groups
 from reports.findings import fields
-from reports.results import ResultFileError, check, worst
+from reports.results import ResultFileError, check
 from tests.documents import ROOT
-from tests.reports.sample import ERRATUM, case, results
+from tests.reports.sample import case, results
 from verification.cases.paper import section8
 from verification.framework.registry import load
 from verification.output.result_files import read_results
@@ -35,23 +35,6 @@ def test_the_run_outweighs_committed_runs_and_the_newest_judged_of_those_counts(
     assert [c["origin"] for c in found.cases if c["id"] == "b/1"] == [origin]
     assert [group.counts["pass"] for group in groups(found)] == [3]
     assert list(found.studies) == ["study"]
-
-
-def test_errata_of_committed_runs_count_the_newest_of_each() -> None:
-    def with_erratum(date: str, **named: str) -> dict:
-        return dated(date, case(f"{date}/1"), errata=[{**ERRATUM, **named}])
-
-    run = with_erratum("2000-01-01", equation="A1", printed="in this run")
-    older = with_erratum("2001-01-01", equation="A4", printed="older")
-    newer = with_erratum("2002-01-01", equation="A4", printed="newer")
-    again = with_erratum("2003-01-01", equation="A1", printed="in another run")
-    found = gathered(run, {"older": older, "newer": newer, "again": again})
-    assert {e["equation"]: e["printed"] for e in found.errata} == {"A1": "in this run", "A4": "newer"}
-
-
-def test_a_broken_committed_run_is_refused() -> None:
-    with pytest.raises(ResultFileError):
-        gathered(results(case("a/1")), {"x": {"format": results()["format"]}})
 
 
 def test_every_pattern_of_the_paper_finds_a_case() -> None:
@@ -117,7 +100,7 @@ def test_the_matrix_has_known_verdicts_and_parts_and_one_row_a_label() -> None:
 
 
 def test_a_long_case_that_did_not_pass_stands_beside_the_quick_one() -> None:
-    for status in ("fail", "error", "unavailable"):
+    for status in ("fail", "unavailable"):
         found = judged([case("reproduction/eq10"), case("reproduction/eq10-full", status)], [])
         row = next(row for row in found if row.claim.label == "Eq. (10)")
         assert [c["id"] for c in row.cases] == ["reproduction/eq10", "reproduction/eq10-full"]
@@ -140,12 +123,6 @@ def test_committed_cases_that_were_not_judged_are_shown_as_such(status: str) -> 
     assert group.counts == {"pass": 1, "fail": 0, "error": 0, "unavailable": 0} | {status: 2}
 
 
-def test_what_decides_about_several_cases() -> None:
-    order = ["error", "fail", "unavailable", "pass"]
-    for k in range(4):
-        assert worst([case(f"a/{j}", order[j]) for j in range(k, 4)]) == order[k]
-
-
 @pytest.mark.parametrize(("uncertainty", "refused"), [(19.9, False), (20.1, True)])
 def test_a_reference_is_as_certain_as_the_tolerance(uncertainty: float, refused: bool) -> None:
     """A tenth of 200."""
@@ -155,24 +132,3 @@ def test_a_reference_is_as_certain_as_the_tolerance(uncertainty: float, refused:
             check(made)
     else:
         check(made)
-
-
-def test_a_file_has_the_date_and_the_commit_of_its_newest_run() -> None:
-    run, old, other = (dated(f"2001-01-0{day}", case(f"{day}/1")) for day in (1, 2, 3))
-    other["provenance"]["dirty"] = True
-    made = [{"provenance": {"date": f"2001-02-0{day}", "commit": None}} for day in (2, 3, 1)]
-    rows = revisions_of(
-        gathered(
-            run,
-            {"old": old, "other": other, "study": {"runs": made, "x": [1]}, "table": {"date": "2001-03-01"}},
-        )
-    )
-    assert [(name, date) for name, date, _ in rows] == [
-        ("this run", "2001-01-01"),
-        ("old.json", "2001-01-02"),
-        ("other.json", "2001-01-03"),
-        ("study.json", "2001-02-03"),
-        ("table.json", "2001-03-01"),
-    ]
-    assert rows[2][2].endswith(" and uncommitted changes")
-    assert rows[3][2] == "n/a"

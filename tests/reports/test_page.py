@@ -81,20 +81,3 @@ def test_the_first_page_has_numbers_discrepancies_and_verdicts(html: str) -> Non
     assert re.findall(r"<h3>(.*?)</h3>", first) == parts
     assert "n/a" not in first
     assert "passed" not in first
-
-
-SPECIAL = (
-    *("active set of tau", "approach", "certificate", "coverage", "elastic part", "facet", "golden"),
-    *("manufactured", "perimeter-corrected", "realisation", "saw teeth", "textbook's curve", "usable"),
-)
-"""Words that the report uses in a sense of its own."""
-
-
-@pytest.mark.slow
-def test_the_glossary_has_the_reports_own_words_and_no_others(html: str) -> None:
-    before, _, after = html.partition('<section id="glossary">')
-    glossary, _, after = after.partition("</section>")
-    terms = {term.replace("sigma_e", "σ_e") for term in re.findall(r"<dt>(.*?)</dt>", glossary)}
-    words = re.sub(r"<[^>]+>|\s+", " ", before + after).replace("&#39;", "'").lower()
-    assert {term for entry in terms for term in entry.split(", ") if term.lower() not in words} == set()
-    assert terms >= set(SPECIAL)
