@@ -22,12 +22,6 @@ def test_e_is_within_what_is_unknown_of_solver_inputs_and_measurement() -> None:
     assert not Point("load", 10.0, 3.0, 15.1, 0.0, 4.0).within
 
 
-def test_half_widths_are_students() -> None:
-    (first, _), (last, half) = repeated([[1.0, 2.0], [2.0, 4.0], [3.0]])
-    assert (first, last) == (2.0, 3.0)
-    assert half == pytest.approx(12.7062 * np.sqrt(2) / np.sqrt(2), rel=1e-5)  # t of one degree of freedom
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_every_measured_file_states_its_source_and_its_reduction(name: str) -> None:
     data = measured(name)

@@ -32,14 +32,6 @@ def test_twelve_scenes_are_stored_with_positive_margins_and_provenance() -> None
         assert content["provenance"]["versions"]["python-flint"]
 
 
-def test_heights_are_exact_in_binary() -> None:
-    for known in stored():
-        heights = known.scene.heights
-        assert np.array_equal(heights, np.rint(heights * 2.0**60) / 2.0**60)
-        gap = heights.max() - heights
-        assert np.array_equal(heights.max() - gap, heights)
-
-
 def test_files_are_written_anew_by_one_command(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
