@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from appendix_a.contact_fem.bodies import MeshPlan, wave_height, wavy_surface
+from appendix_a.contact_fem.bodies import MeshPlan, wavy_surface
 from appendix_a.contact_fem.contact import Contact
 from appendix_a.contact_fem.ends import contact_ends
 from appendix_a.contact_fem.interface import Interface
 from appendix_a.contact_fem.scene import Material, WavyPair
-from appendix_a.contact_fem.sequence import Estimate, graded_plans, plans, slide
+from appendix_a.contact_fem.sequence import graded_plans, plans, slide
 from verification.exact.sliding_wave import SlidingWave
 from verification.exact.westergaard import Wave
 
@@ -120,14 +119,3 @@ def test_ends_know_the_exponents_of_coupled_sliding() -> None:
     inside = (x > exact.edges[0]) & (x < exact.edges[1])
     pressure = np.where(inside, exact.pressure(x), 0.0)
     assert contact_ends(x, pressure, slip=0.2, nodes_per_degree=2) == pytest.approx(exact.edges, abs=5e-5)
-
-
-def test_estimates_bound_ordered_and_scattered_series() -> None:
-    assert Estimate.of(4.0, 2.0, 1.5) == Estimate(1.5, 0.5, 2.0)
-    assert Estimate.of(1.0, 1.3, 1.2).error == pytest.approx(0.15)
-
-
-def test_a_harmonic_has_its_share_order_and_phase() -> None:
-    """At an eighth of a wave cos 45 deg, and of the second order cos(90 deg + 0.3) = -sin 0.3."""
-    found = wave_height(np.array([0.125]), 2.0, ((2, 0.4, 0.3),))
-    assert found == pytest.approx(2 * (math.sqrt(0.5) - 0.4 * math.sin(0.3)), rel=1e-14)

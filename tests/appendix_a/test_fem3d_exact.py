@@ -107,16 +107,6 @@ def test_tilted_plane_is_the_facet_prediction_to_second_order() -> None:
     assert antisymmetric[2] / antisymmetric[1] == pytest.approx(8.0, rel=1e-2)
 
 
-def test_self_coefficient_of_a_tilted_plane() -> None:
-    """cos(theta) for 2a along the facet; half that drop, theta^2 / 4, for 2a in projection."""
-    slope = np.radians(1.0)
-    flat = patch.normal_coefficient(one(0.0), one(0.0), NU)
-    facet = patch.tilted_plane(one(0.0), one(0.0), NU, 1.0, projected=False) / flat
-    projected = patch.tilted_plane(one(0.0), one(0.0), NU, 1.0, projected=True) / flat
-    assert facet[0] == pytest.approx(np.cos(slope), rel=1e-14)
-    assert 1 - projected[0] == pytest.approx(slope**2 / 4, rel=1e-3)
-
-
 def test_wave_kernel_against_its_double_integral() -> None:
     """The residues themselves: sin^2 of the angle summed over both wavenumbers, Gaussian sources of width w.
 

@@ -9,14 +9,13 @@ import pytest
 
 from appendix_a.fem import mixed
 from appendix_a.fem.axisymmetric import body_on, circular_patch
-from appendix_a.fem.departure import Departure, Setup, body_of
+from appendix_a.fem.departure import Setup, body_of
 from appendix_a.fem.elasticity import lame
 from appendix_a.fem.geometry import flat, sinusoid_boundary
 from appendix_a.fem.halfplane import pressed_strip
 from appendix_a.fem.mesh import Source
 from appendix_a.fem.output import element_stresses, write_fields
 from appendix_a.fem.result import WavyResult
-from appendix_a.fem.sinusoid import departures
 from appendix_a.fem.wedge_fem import wedge_tip
 from appendix_a.leading_order import first_order
 
@@ -91,11 +90,6 @@ def test_wedge_tip_is_symmetric_and_of_first_order_where_the_formula_says():
     assert found.discretisation_error < 1e-4 * np.abs(found.flat).min()
 
 
-def test_waves_of_no_slope_are_the_flat_boundary():
-    still = departures(0.0, 50.0, 0.3, NEIGHBOURS, levels=(0, 0, 0)).result(0.3)
-    assert np.all(still.wavy == still.flat)
-
-
 def test_patch_formula_against_quadrature_of_chords():
     """In polar coordinates about the field point, the integral of 1 / distance is that of chord lengths."""
     for r in (0.0, 0.5, 2.5):
@@ -114,14 +108,6 @@ def test_flat_patch(nu):
         errors.append(np.max(np.abs(body.surface_values(u, RADII) / circular_patch(RADII, nu))))
     assert errors[1] < 3e-5  # measured 1.5e-5
     assert errors[1] < errors[0] / 8  # cells halved, fans finer: third order and more
-
-
-def test_displacements_for_every_ratio_go_by_kappa() -> None:
-    """u / (1 + nu) is linear in nu: 1 at 0, 2.6 / 1.3 = 2 at 0.3, so 1 + 0.5 / 0.3 at 1/2."""
-    found = Departure(np.array([1.0]), np.array([2.6]))
-    assert found.at(0.0) == pytest.approx([1.0])
-    assert found.at(0.3) == pytest.approx([2.6])
-    assert found.at(0.5) == pytest.approx([1.5 * (1 + 0.5 / 0.3)])
 
 
 def test_errors_of_meshes_and_radii() -> None:

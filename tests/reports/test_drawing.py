@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,7 @@ import pytest
 from matplotlib.figure import Figure as Canvas
 
 from reports.catalogue import DECLARED
-from reports.drawing import INK, Draw, Figure, complete, curves, maps, svg
+from reports.drawing import INK, Draw, Figure, curves, maps, svg
 from reports.exhibit import as_csv
 
 
@@ -73,14 +72,6 @@ def test_curves_that_coincide_have_a_panel_of_their_difference() -> None:
     np.testing.assert_array_equal(below.lines[0].get_ydata(), [0.0, 0.5])
     np.testing.assert_array_equal(above.lines[0].get_xdata(), [0, 10])
     assert (above.get_xlabel(), below.get_xlabel(), below.get_ylabel()) == ("", "x", "less")
-
-
-def test_derived_series_are_in_the_csv() -> None:
-    figure = replace(
-        curves("*", "", "x", {"y": "y"}, xlabel="", ylabel=""), needs=("x",), derived=lambda d: {"y": d["x"]}
-    )
-    assert as_csv(figure, complete(figure, {"x": [1, 2]})).splitlines() == ["x,y", "1,1", "2,2"]
-    assert svg(figure, {"x": [1, 2]}) is not None
 
 
 @pytest.mark.parametrize(

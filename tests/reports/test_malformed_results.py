@@ -14,13 +14,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from reports.generator import anchor, render
+from reports.generator import render
 from reports.results import METRICS, ResultFileError, check, verdict_of
 from tests.reports.sample import ERRATUM, TEXTBOOK, case, results
 from tests.verification.cli.children import Ended, one_line
 from verification.cli import main
 
-Capture = pytest.CaptureFixture[str]
 WHOLE = results(
     case("kernels/textbook-normal-fails", data=TEXTBOOK),
     case("a/2", "unavailable"),
@@ -127,19 +126,3 @@ def test_data_that_its_figure_cannot_show_is_one_line(
     command = ["report", "--results", str(tmp_path / "r.json"), "--committed", str(none)]
     assert main([*command, "--output", str(tmp_path / "out")]) == 2
     one_line(Ended(2, capsys.readouterr().err), "data of case 'kernels/textbook-normal-fails'", 2)
-
-
-LOOK_ALIKES = st.text("a/-._2f", min_size=1)
-IDS = st.text(st.characters(codec="utf-8", exclude_categories=["Z", "C"]), min_size=1)
-
-
-@given(LOOK_ALIKES | IDS, LOOK_ALIKES | IDS)
-def test_different_ids_have_different_anchors(one: str, other: str) -> None:
-    assert (anchor(one) == anchor(other)) == (one == other)
-
-
-def test_a_command_of_an_open_quote_is_refused_by_its_own_option(tmp_path: Path, capfd: Capture) -> None:
-    alien = replaced(WHOLE, ("provenance", "command"), "verify 'x")
-    (tmp_path / "r.json").write_text(json.dumps(alien | {"solver": {"name": "mine"}}))
-    assert main(["report", "--results", str(tmp_path / "r.json"), "--output", str(tmp_path / "out")]) == 2
-    assert "--results" in capfd.readouterr().err

@@ -15,10 +15,8 @@ from reports.agreement import (
     numbers,
     verdict_of,
 )
-from reports.findings import by_claim
-from reports.front_page import LEVEL, front_page
+from reports.front_page import front_page
 from tests.reports.sample import case
-from verification.coverage import classes
 
 CASES = {
     "reproduction/table3-area": case("a/1", data={
@@ -98,13 +96,6 @@ def test_the_rounding_of_printed_inputs_is_part_of_u() -> None:
     assert verdict_of([ball, rough]) == "not confirmed"
 
 
-@pytest.mark.parametrize(("status", "value"), [("pass", 2.0), ("fail", 1.0)])
-def test_a_long_case_stands_for_the_quick_one_where_it_passed(status: str, value: float) -> None:
-    quick, long = case("b/1", value=1.0), case("b/1-full", status, value=2.0)
-    for order in ([quick, long], [long, quick]):
-        assert by_claim(order)["b/1"]["value"] == value
-
-
 NUMBERS = [
     Number("Table 3", "μ, Table 3", "1.680 µm, 512²", "", 0.1, 0.11, 0.004, 0.0005, 0.004),
     Number("Table 3", "A, Table 3", "smooth, 512²", "mm²", 0.5, 0.5004, 0.0, 0.0005),
@@ -129,10 +120,6 @@ STUDIES: dict[str, Any] = {
     "coverage_corrected": {"table": COVERED},
     "extremes": {"counts": {"right": 0, "wrong": 1, "crash": 2, "detected failure": 3}, "states": []},
 }
-
-
-def test_the_level_that_the_first_page_names_is_that_of_the_study() -> None:
-    assert LEVEL == classes.LEVEL
 
 
 def test_the_first_page_by_hand() -> None:

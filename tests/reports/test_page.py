@@ -59,21 +59,6 @@ def test_figures_have_symbols_and_units_and_no_hatching(html: str) -> None:
     assert not any("<pattern" in figure for figure in figures)
 
 
-PHONE = 396
-"""Pixels of a figure's width in a window of 420."""
-
-
-@pytest.mark.slow
-def test_letters_of_figures_have_9_pixels_on_a_phone(html: str) -> None:
-    styles = dict(re.findall(r"\.(s\d+)\{([^}]*)\}", html))
-    figures = re.findall(r'<svg class="plot".*?</svg>', html, flags=re.S)
-    for figure in figures:
-        width = float(re.search(r'viewBox="0 0 ([\d.]+)', figure)[1])  # type: ignore[index]  # every one has it
-        used = " ".join(styles[name] for name in set(re.findall(r'class="(s\d+)"', figure)))
-        sizes = [float(size) for size in re.findall(r"font(?:-size)?: (?:\w+ )*([\d.]+)px", used)]
-        assert min(sizes) * PHONE / width >= 9
-
-
 @pytest.mark.slow
 def test_the_first_page_has_numbers_discrepancies_and_verdicts(html: str) -> None:
     first = html.partition('<section id="summary">')[2].partition("</section>")[0]

@@ -133,10 +133,6 @@ def test_a_number_whose_bar_exceeds_half_of_it_is_not_usable(
         assert re.search(r"p_max +\d\d?0* +\+- 3e\+07 \(not usable\) +MPa", printed)
 
 
-def test_a_frictionless_scene_is_usable() -> None:
-    assert "not usable" not in shown("solve hertz --grid 32 --strict")
-
-
 @pytest.mark.parametrize("finished", [True, False])
 def test_an_interrupt_shows_the_last_finished_grid(
     finished: bool, replaced: Replace, monkeypatch: pytest.MonkeyPatch

@@ -90,27 +90,11 @@ def radius_share(one: rf.Scene) -> float | None:
     return found[1] / min(one.lengths) if (found := contact_radius(one)) else None
 
 
-def approach_over_rms(one: rf.Scene) -> float | None:
-    if (found := contact_radius(one)) is None:
-        return None
-    return found[1] ** 2 / found[0] / float(np.std(roughness(one).sample(one.grid(128))))
-
-
 def pressure(one: rf.Scene) -> float:
     """Pressure in contact (Pa): of the roughness, or the mean one of the ball if that is more."""
     found = contact_radius(one)
     of_ball = one.load / (math.pi * found[1] ** 2) if found else 0.0
     return max(0.5 * modulus(one) * rms_gradient(one), of_ball)
-
-
-def lay_lengths(one: rf.Scene) -> tuple[float, float]:
-    along, across = np.array(roughness(one).correlation_length) / min(one.lengths)
-    return float(along), float(across)
-
-
-def lay_ratio(one: rf.Scene) -> float | None:
-    along, across = lay_lengths(one)
-    return along / across if along < 0.9 - 1e-12 else None
 
 
 OF_EVERY_CLASS = [
@@ -127,39 +111,16 @@ OF_USUAL_CLASSES = [
     ("tau", lambda one: one.friction.tau / pressure(one), 0.01, 0.3),
     ("share in contact", share_of_plane, 0.05, 0.6),
     ("a / side", radius_share, 0.1, 0.3),
-    ("approach / rms", approach_over_rms, 1.5, 30),
 ]
-LAYS = [kind for kind in CLASSES if "lay" in kind]
 RANGES = [
     *(Range(kind, *row) for kind in CLASSES for row in OF_EVERY_CLASS),
     *(Range(kind, *row) for kind in USUAL for row in OF_USUAL_CLASSES),
     Range("nearly full", "share in contact", share_of_plane, 1.5, 5),
     Range("few elements", "a / side", radius_share, 0.02, 0.06),
     Range("few elements", "R / a", lambda one: np.divide(*contact_radius(one)), 50, 1000),
-    Range("ball on data", "a / side", radius_share, 0.1, 0.3),
-    Range(
-        "few asperities",
-        "length",
-        lambda one: roughness(one).correlation_length / min(one.lengths),
-        0.25,
-        0.45,
-    ),
-    Range(
-        "4:1 rectangles", "length", lambda one: roughness(one).correlation_length / min(one.lengths), 0.2, 0.6
-    ),
-    *(
-        Range(kind, "length", lambda one: roughness(one).correlation_length / min(one.lengths), 0.05, 0.25)
-        for kind in ("isotropic", "capped")
-    ),
-    *(Range(kind, "across", lambda one: lay_lengths(one)[1], 0.05, 0.15) for kind in LAYS),
-    *(Range(kind, "along / across", lay_ratio, 3, 10) for kind in LAYS),
     Range("lay oblique to the grid", "lay", lambda one: math.degrees(roughness(one).lay), 12, 78, False),
-    Range("lay oblique to the grid", "direction", lambda one: one.sliding_direction, 0, 2 * math.pi, False),
-    Range("grooves", "phase", lambda one: roughness(one).phase, 0, 2 * math.pi, False),
-    Range("self-affine", "roll-off", lambda one: roughness(one).roll_off / min(one.lengths), 0.15, 0.4),
     Range("self-affine", "long cut", lambda one: roughness(one).long_cut / roughness(one).roll_off, 1, 2),
     Range("self-affine", "short cut", lambda one: roughness(one).roll_off / roughness(one).short_cut, 4, 10),
-    Range("self-affine", "Hurst exponent", lambda one: roughness(one).hurst, 0.5, 1, False),
 ]
 
 

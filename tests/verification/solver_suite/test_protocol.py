@@ -53,14 +53,6 @@ def test_a_problem_is_checked(field: str, changed: dict[str, object]) -> None:
     assert refused.value.field == field
 
 
-@pytest.mark.parametrize(
-    "changed", [{"tau": -1.0}, {"shear_compliance": np.nan}, {"sliding_direction": np.inf}]
-)
-def test_a_coupling_is_checked(changed: dict[str, float]) -> None:
-    with pytest.raises(InputError, match=next(iter(changed))):
-        Coupling(**({"tau": 0.0, "beta": 0.0, "shear_compliance": 0.0} | changed))
-
-
 def test_an_approach_counts_from_the_mean_planes_only_where_it_is_periodic() -> None:
     for periodic, touch in ((False, 2e-7), (True, 3.5e-7)):
         problem = ContactProblem(GAP, 1e-6, 1e9, approach=2e-7, periodic=periodic)

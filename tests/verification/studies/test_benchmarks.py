@@ -12,7 +12,7 @@ import pytest
 
 from verification.benchmarks import rounds
 from verification.benchmarks.__main__ import main
-from verification.benchmarks.codes import ALONE, OWN, SHEARED, SLOPED, codes
+from verification.benchmarks.codes import OWN, SHEARED, SLOPED, codes
 from verification.benchmarks.problems import problem
 from verification.benchmarks.rounds import Failed, Turns, in_turns, tuned, tuned_turns
 from verification.benchmarks.summary import ratios
@@ -114,20 +114,6 @@ def test_a_search_for_a_tolerance(
     tolerance, tried = tuning(gap, start, seconds)
     assert low <= tolerance <= high
     assert tried[: len(first)] == pytest.approx(first)
-
-
-def test_peers_are_loosened_and_ours_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Turns, "solve", lambda _, tolerance, *__: found(1.0, gap=tolerance / 100))
-    for name in (OWN, ALONE, SHEARED, SLOPED):
-        assert tuned_turns(name, "smooth", 64, None, 1, 60.0).tolerance == rounds.CERTIFIED
-    first = tuned_turns("peer", "smooth", 64, None, 1, 60.0)
-    assert 5e-7 <= first.tolerance <= 1e-6
-    # on the next grid a peer goes on from there
-    tried: list[float] = []
-    monkeypatch.setattr(Turns, "solve", lambda _, tolerance, *__: tried.append(tolerance) or found(30.0))
-    first.rounds = [found(7.0), found(1.0)]
-    assert not tuned_turns("peer", "smooth", 128, first, 1, 60.0).failure
-    assert tried == [first.tolerance]
 
 
 def test_who_cannot_make_it_is_left_out_with_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -87,14 +87,6 @@ def test_failed_runs_are_named_not_kept_and_tried_again(
     assert (mended.found, mended.finished, mended.failures) == (2, 2, {})
 
 
-def test_a_grid_of_one_element_takes_time_too(tmp_path: Path) -> None:
-    ticks: list[engine.Progress] = []
-    engine.sweep(small(1, (1, 2)), tmp_path / "s.sqlite", workers=0, tick=ticks.append)
-    left = ticks[1].seconds_left
-    assert left is not None
-    assert left > 0.0
-
-
 @pytest.mark.parametrize("kept", [0, 1])
 def test_a_refusal_leaves_the_store(tmp_path: Path, kept: int) -> None:
     path, study = tmp_path / "s.sqlite", small(1, (12,))

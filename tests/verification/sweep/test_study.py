@@ -44,14 +44,6 @@ def test_realisations_differ_in_their_seeds_only_and_keep_them_over_the_axes() -
     assert runs[0].inputs["scene"]["upper"]["surface"][-1]["seed"] == 1
 
 
-def test_no_roughness_leaves_the_shape() -> None:
-    flat = {"grid": [8], "upper_rms": [0], "lower_rms": [0]}
-    (run,) = study_from_dict({"scene": "table1-rough", "vary": flat}).runs()
-    assert [part["kind"] for part in run.inputs["scene"]["upper"]["surface"]] == ["sphere"]
-    assert run.inputs["scene"]["lower"]["surface"] == [{"kind": "flat"}]
-    assert run.coordinates["correlation_length"] is None
-
-
 def test_every_input_and_the_code_change_the_key(monkeypatch: pytest.MonkeyPatch) -> None:
     changes = [{}, {"grid": [24]}, {"load": [69.0]}, {"beta": [0.0]}, {"sliding_offset": [1e-6]}]
     studies = [study_from_dict(BASE | {"vary": {"grid": [16]} | change}) for change in changes]
@@ -221,9 +213,6 @@ def test_only_what_differs_in_its_limits_is_sampled(monkeypatch: pytest.MonkeyPa
     }
     study_from_dict(BASE | {"realisations": 100, "vary": axes})
     assert sampled == [(0.0, 256)] * 2  # the shortest and the longest correlation
-    sampled.clear()
-    study_from_dict(BASE | {"vary": {"grid": [16], "sliding_offset": [0.0, 2e-6, -1e-6], "load": [1.0, 2.0]}})
-    assert sampled == [(-1e-6, 16), (2e-6, 16)]
 
 
 @pytest.mark.parametrize(
