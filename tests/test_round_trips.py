@@ -18,7 +18,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import refimpl as rf
-from appendix_a.fem.coefficient_map import CoefficientMap
 from refimpl.model.problem import Terms
 from refimpl.planning.plan import Plan, make_plan
 from refimpl.scene.discretise import discretise
@@ -262,24 +261,3 @@ def test_no_solution_is_forged() -> None:
             replace(solution, **{name: getattr(solution, name)})
         with pytest.raises(AttributeError):
             setattr(solution, name, getattr(solution, name))
-
-
-def test_the_map_of_coefficients(tmp_path: Path) -> None:
-    """Five decimals of every number, along each axis."""
-    shape = (5, 4, 3, 6)
-    numbers = (np.arange(360).reshape(shape) + 1) * 1.1234567
-    table = CoefficientMap(
-        slope_deg=(1.0, 2.5, 4.0, 9.0, 15.0),
-        wavelength=(4.0, 8.0, 20.0, 70.0),
-        position=(0.0, 0.25, 0.5),
-        offset=(-3.0, -1.0, 0.5, 2.0, 4.0, 7.0),
-        kappa_part=np.round(numbers, 5),
-        constant_part=np.round(-numbers / 3, 5),
-        error_percentage_points=np.round(numbers[..., 0] / 7, 5),
-    )
-    table.write(tmp_path / "map.json")
-    again = CoefficientMap.read(tmp_path / "map.json")
-    for field in fields(CoefficientMap):
-        assert np.array_equal(getattr(again, field.name), getattr(table, field.name)), field.name
-    stated = json.loads((tmp_path / "map.json").read_text())["stated_error_percentage_points"]
-    assert stated == pytest.approx(355 * 1.1234567 / 7)  # the largest

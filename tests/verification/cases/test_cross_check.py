@@ -45,21 +45,6 @@ def test_nested_grids_and_windows_agree_too(name: str, monkeypatch: pytest.Monke
     agree(scene_trial, fft)
 
 
-@pytest.mark.nightly
-def test_the_scenes_stress_what_they_say() -> None:
-    assert len(TRIALS) >= 14
-    assert {trial.M for trial in TRIALS.values()} >= {16, 48}
-    assert all(16 <= trial.M <= 48 for trial in TRIALS.values())
-    fractions = {name: trial.dense.contact.mean() for name, trial in TRIALS.items()}
-    assert TRIALS["single-point"].dense.contact.sum() == 1
-    assert fractions["full"] == fractions["full-periodic"] == 1
-    assert 0.9 < fractions["near-full"] < 1
-    assert 0.9 < fractions["near-full-periodic"] < 1
-    assert TRIALS["strong-tau"].dense.status is rf.Status.CYCLED
-    assert TRIALS["strong-tau"].dense.details.excluded.any()
-    assert not TRIALS["identical"].dense.plan.includes("coupled")
-
-
 TWO_LAWFUL = Sample(
     bumps=((7, 4, 6, 3), (0, 0, 4, 6), (1, 5, 1, 1), (1, 0, 1, 0)),
     E=(1, 35), nu=(0, 30), pressure=50, tau=290, angle=180,
