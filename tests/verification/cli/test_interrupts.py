@@ -19,7 +19,7 @@ from pathlib import Path
 import pytest
 
 from refimpl.solvers.production.projected_cg import ProjectedCG
-from tests.verification.cli.children import LONG, Ended, forked, one_line, started
+from tests.verification.cli.children import LONG, Ended, forked, one_line
 from tests.verification.cli.commands import run
 from verification.cli import main, solve
 from verification.output import files
@@ -82,35 +82,6 @@ def test_an_interrupt_ends_the_start_and_a_verification_at_once(
     _, err = child.communicate(timeout=60)
     assert (child.returncode in (130, -signal.SIGINT), err) == (True, b"")
     assert time.monotonic() - begun < 15
-
-
-def children_of(pid: int) -> list[int]:
-    return [int(found) for found in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
-
-
-def ignores_interrupts(pid: int) -> bool:
-    status = dict(line.split(":", 1) for line in Path(f"/proc/{pid}/status").read_text().splitlines())
-    return bool(int(status["SigIgn"], 16) >> (signal.SIGINT - 1) & 1)
-
-
-@pytest.mark.nightly
-@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="processes are looked up in /proc")
-def test_an_interrupted_map_ends_at_once_with_its_workers(tmp_path: Path) -> None:
-    tail = ["--slopes-deg", "2.5,5,10,20", "--wavelengths", "8,16,32,64", "--jobs", "2", "--json", "m.json"]
-    child = started(["appendix-a", "map", *tail], tmp_path)
-    deadline = time.monotonic() + 60
-    while time.monotonic() < deadline:
-        workers = children_of(child.pid)
-        if len(workers) == 2 and all(map(ignores_interrupts, workers)):
-            break
-        time.sleep(0.05)
-    time.sleep(1.0)  # Python loses an interrupt that comes within a fork
-    for process in (*workers, child.pid):  # as a terminal does
-        os.kill(process, signal.SIGINT)
-    _, err = child.communicate(timeout=20)  # the whole map takes minutes; the workers hold the pipes too
-    assert (child.returncode, err) == (130, "")
-    assert not any(Path(f"/proc/{pid}").exists() for pid in workers)
-    assert list(tmp_path.iterdir()) == []
 
 
 def full_disk() -> None:

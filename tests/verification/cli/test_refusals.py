@@ -175,7 +175,6 @@ def test_the_file_that_is_refused_is_named_by_its_option(
     [
         ("scene.toml", "solve scene.toml --grid 8"),
         ("heights.npy", "solve measured.toml --grid 8"),
-        ("study.toml", "sweep study.toml"),
         ("heights.npy", "sweep study.toml"),
         ("r.json", "report --results r.json"),
         ("long.json", "report --results r.json --committed kept"),

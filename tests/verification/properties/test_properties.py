@@ -21,8 +21,8 @@ from verification.properties.nightly import SOLVERS
 
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("name", INVARIANTS)
-def test_invariant(name: str, solver: str, order_seed: int | None) -> None:
-    check_solver(SOLVERS[solver], examples=6, only=[name], seed=order_seed)
+def test_invariant(name: str, solver: str) -> None:
+    check_solver(SOLVERS[solver], examples=6, only=[name])
 
 
 def test_no_invariant_rests_on_an_assert() -> None:
