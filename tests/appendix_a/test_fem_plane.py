@@ -81,6 +81,7 @@ def test_fields_on_disk_are_those_of_the_solve(tmp_path):
     assert stored.cell_data["sigma_yy"][0][middle] == pytest.approx(-1.0, abs=0.05)
 
 
+@pytest.mark.nightly
 def test_wedge_tip_is_symmetric_and_of_first_order_where_the_formula_says():
     found = wedge_tip(2.5, 8.0, 0.3, offsets=NEIGHBOURS)
     assert found.wavy == pytest.approx(found.wavy[::-1], abs=1e-9)

@@ -141,20 +141,3 @@ def test_errata_an_uncommitted_tree_and_a_selection_are_shown() -> None:
 def test_what_is_not_a_result_file_is_refused(broken: object) -> None:
     with pytest.raises(ResultFileError):
         check(broken)
-
-
-def run_of(seconds: float, date: str, commit: str, processor: str) -> dict[str, object]:
-    made = results(case("kernels/textbook-normal-fails", data=TEXTBOOK, seconds=seconds))
-    machine = {"cores": 2, "processor": processor, "platform": "Linux"}
-    made["provenance"] |= {"date": f"{date}T00:00:00+00:00", "commit": commit, "machine": machine}
-    return made
-
-
-def test_pages_of_two_runs_differ_in_provenance_alone() -> None:
-    expected = render(run_of(11.1, "2001-01-01", "a1" * 20, "one"))
-    changes = {"11.1 s": "22.2 s", "2001-01-01": "2002-02-02", "a1" * 20: "b2" * 20, "one, 2": "two, 2"}
-    for there, here in changes.items():
-        assert there in expected
-        expected = expected.replace(there, here)
-    expected = expected.replace("a1" * 6, "b2" * 6)
-    assert render(run_of(22.2, "2002-02-02", "b2" * 20, "two")) == expected

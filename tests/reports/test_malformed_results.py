@@ -15,7 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from reports.generator import render
-from reports.results import METRICS, ResultFileError, check, verdict_of
+from reports.results import ResultFileError, check
 from tests.reports.sample import ERRATUM, TEXTBOOK, case, results
 from tests.verification.cli.children import Ended, one_line
 from verification.cli import main
@@ -66,36 +66,11 @@ def test_every_field_with_every_other_kind_of_value_is_checked() -> None:
 
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # logarithms of what is no error
-@settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=5, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.sampled_from(PLACES), st.sampled_from(REPLACEMENTS), st.booleans())
 def test_what_passes_the_check_is_shown(path: tuple[Any, ...], value: object, older: bool) -> None:
     made = replaced(WHOLE, path, value)
     shown_or_refused(WHOLE if older else made, made if older else None)
-
-
-NUMBERS = st.floats(-1e3, 1e3) | st.sampled_from([0.0, 1e-9, 0.1, 5.0])
-
-
-@given(st.sampled_from(METRICS), NUMBERS, NUMBERS, NUMBERS, st.sampled_from(["pass", "fail"]))
-def test_no_status_passes_that_the_numbers_contradict(
-    metric: str, value: float, reference: float, tolerance: float, status: str
-) -> None:
-    """Errors by the formulas of the guide, tolerances of any size: a pass means error <= tolerance."""
-    judged = metric not in ("at_most", "at_least")
-    error = abs(value - reference) / (abs(reference) or 1.0 if metric == "relative" else 1.0)
-    made = case(
-        "a/1", status, metric=metric, value=value, reference=reference if judged else None,
-        reference_uncertainty=0.0, error=error if judged else value, tolerance=tolerance,
-    )  # fmt: skip
-    try:
-        check(results(made))
-    except ResultFileError:
-        return
-    assert verdict_of(made) == status
-    if status == "pass" and metric != "at_least":
-        assert (abs(value - reference) if judged else value) <= tolerance * (
-            abs(reference) if metric == "relative" else 1.0
-        ) * (1 + 1e-15)
 
 
 DISHONEST = {

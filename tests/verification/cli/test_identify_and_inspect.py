@@ -157,12 +157,6 @@ def test_keys_reach_the_surface() -> None:
     ]  # fmt: skip
 
 
-def test_a_parameter_without_a_value_is_a_dash_and_null() -> None:
-    np.save("flat.npy", np.zeros((8, 8)))
-    assert "Sal         -" in shown("inspect flat.npy --unit um --pixel-size 1e-6")
-    assert answer("inspect flat.npy --unit um --pixel-size 1e-6")["parameters"]["Sal"] is None
-
-
 def test_the_table_of_an_inspected_surface() -> None:
     document = {
         "file": "a.sur", "format": "sur", "channel": "Z", "channels": ["Z", "I"], "points": [30, 20],

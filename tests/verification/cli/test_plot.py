@@ -169,15 +169,6 @@ def test_the_legend_explains_what_is_there() -> None:
     assert f"{100 * capped.plastic_share:.3g} % at the hardness" in axes.get_title()
 
 
-def test_numbers_have_their_error_bars_and_units_at_scale() -> None:
-    lines = plot.numbers_of(solved(16))
-    assert lines[0].startswith("μ = 0.1")
-    assert "±" in lines[0]
-    assert lines[3].endswith("MPa")
-    assert "sliding at 0° from x" in lines
-    assert lines[-1] == "converged, 16 × 16 elements"
-
-
 MAGIC = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 
 

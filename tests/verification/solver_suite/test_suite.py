@@ -35,15 +35,6 @@ def naming(fault: Fault) -> list[str]:
     return [check.id for check in suite() if fault in check.catches]
 
 
-def test_the_dense_reference_passes_what_is_small_enough() -> None:
-    names = ["pins", "wide-pins", "sheared-pins*", "periodic-sheared-*", "hertz-peak", "sliding-residual"]
-    results = {r.id.partition("/")[2]: r for r in run(own.dense, [f"solver/{name}" for name in names])}
-    too_large = {name for name, r in results.items() if r.status != "pass"}
-    assert len(results) == 8
-    assert too_large == {"hertz-peak", "wide-pins"}
-    assert results["hertz-peak"].note == "the solver does not offer: 32 elements along one axis"
-
-
 def test_every_fault_is_named_and_described() -> None:
     for check in suite():
         assert all(fault in check.case(own.solve).claim for fault in check.catches)

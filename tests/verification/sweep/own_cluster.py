@@ -1,4 +1,4 @@
-"""A dask.distributed cluster of processes of our own, whose scheduler can be killed."""
+"""A dask.distributed cluster of processes of our own, which ends with the test."""
 
 from __future__ import annotations
 
@@ -10,24 +10,17 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 START_SECONDS = 60.0
-ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-
-
-class Cluster(NamedTuple):
-    """The scheduler's address and its process."""
-
-    address: str
-    scheduler: subprocess.Popen[bytes]
 
 
 @contextmanager
-def cluster(
-    folder: Path, environment: Mapping[str, str] = ONE_THREAD, *, drop: tuple[str, ...] = ()
-) -> Iterator[Cluster]:
-    """A cluster of one worker of one thread; ``environment`` is added to this process's, without ``drop``."""
+def cluster(folder: Path, environment: Mapping[str, str], *, drop: tuple[str, ...]) -> Iterator[str]:
+    """Address of a cluster of one worker of one thread.
+
+    ``environment`` is added to this process's, without ``drop``.
+    """
     import distributed
 
     every = {name: value for name, value in os.environ.items() if name not in drop} | dict(environment)
@@ -46,7 +39,7 @@ def cluster(
         connect: Any = distributed.Client  # untyped
         with connect(address, timeout=START_SECONDS) as client:
             client.wait_for_workers(1, timeout=START_SECONDS)
-        yield Cluster(address, made[0])
+        yield address
     finally:
         for process in made:
             process.kill()
