@@ -14,7 +14,6 @@ from appendix_a.strip.field import flat_displacement
 from appendix_a.strip.profile import Sinusoid
 
 
-
 @pytest.mark.parametrize("sign", [1, -1])
 def test_flat_displacement_is_accurate_at_any_distance(sign: int) -> None:
     """Against hundreds of digits: the two logarithms cancel both near the centre and far away."""

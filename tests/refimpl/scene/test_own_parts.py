@@ -134,8 +134,7 @@ def test_a_linear_law_of_another_form_has_the_bars_of_the_papers() -> None:
         is_linear = True
 
     papers, own = (
-        solve(scene(law), grid=32)
-        for law in (rf.Friction(0.33e6, 0.22), AtVelocity(1.1 * 0.3e6, 1.1 * 0.2))
+        solve(scene(law), grid=32) for law in (rf.Friction(0.33e6, 0.22), AtVelocity(1.1 * 0.3e6, 1.1 * 0.2))
     )
     assert [own.error(name) for name in FRICTION] == pytest.approx([papers.error(n) for n in FRICTION])
 

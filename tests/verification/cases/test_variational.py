@@ -19,7 +19,6 @@ from verification.framework.registry import find
 from verification.scenes.cross_checks import Trial, pressed
 
 
-
 @pytest.fixture
 def small_table(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setattr(variational, "DENSE_GRIDS", (8, 12))
