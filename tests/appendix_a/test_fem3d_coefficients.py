@@ -11,10 +11,9 @@ import numpy as np
 import pytest
 
 from appendix_a.fem3d import study
-from appendix_a.fem3d.coefficients import Coefficients3D, coefficients, corrected
+from appendix_a.fem3d.coefficients import Coefficients3D
 from appendix_a.fem3d.elasticity import mapped
 from appendix_a.fem3d.fields import write_fields
-from appendix_a.fem3d.leading_order import facet_part
 from appendix_a.fem3d.mesh import block
 from appendix_a.fem3d.patch import boussinesq, cerruti
 from appendix_a.fem3d.space import space
@@ -52,12 +51,6 @@ def test_mirror_image() -> None:
     assert down[[0, 7, 8, 9]] == pytest.approx(up[[0, 7, 8, 9]], rel=1e-6)
 
 
-@pytest.fixture(scope="module")
-def flank() -> Coefficients3D:
-    """10 degrees in the middle of a flank."""
-    return coefficients(10.0, 20.0, 0.25, NU)
-
-
 def test_outer_boundary_carries_both_forces() -> None:
     """Far away the element is a point force down and one uphill; 1 % at 30 a is more than a / R squared."""
     surface = Waviness(15.0, 20.0, 0.25)
@@ -70,16 +63,6 @@ def test_outer_boundary_carries_both_forces() -> None:
     expected = 4.0 * boussinesq(*at) + force * cerruti(*at)
     assert np.abs(held[:, outer] - expected).max() < 0.01 * np.abs(expected).max()
     assert np.all(held[:, ~outer] == 0)
-
-
-@pytest.mark.nightly
-def test_correction_removes_the_antisymmetric_part(flank: Coefficients3D) -> None:
-    surface = Waviness(10.0, 20.0, 0.25)
-    left = corrected(flank, surface, NU)
-    assert np.all(np.abs(left.antisymmetric) < np.abs(flank.antisymmetric) / 5)
-    removed = facet_part(surface, X, Y, NU)[1:4] / flank.flat[1:4]
-    assert flank.forward - left.forward == pytest.approx(removed, rel=1e-12)
-    assert left.self_error == flank.self_error
 
 
 def fake(**_: object) -> Coefficients3D:

@@ -15,7 +15,7 @@ from verification.solver_suite import covering, own
 from verification.solver_suite.checks.covering import further
 from verification.solver_suite.covering import FILE, stored, text
 from verification.solver_suite.design import further_rows, posed, rows
-from verification.solver_suite.dimensions import DESIGNS, FURTHER
+from verification.solver_suite.dimensions import DESIGNS, FIXED, FURTHER
 from verification.solver_suite.isolated import Limited
 from verification.solver_suite.protocol import ContactProblem
 from verification.solver_suite.suite import identity, run, select
@@ -71,6 +71,17 @@ def test_no_right_solver_fails_at_the_claim_that_it_states(solver: own.Own, clai
     statuses = [r.status for r in run(Limited(solver, replace(solver.abilities, precision=claim)), QUICK)]
     assert {*statuses} <= {"pass", "unavailable"}
     assert statuses.count("pass") >= 20  # type: ignore[arg-type]  # a status is a text
+
+
+def test_our_solver_claims_no_success_on_a_gap_that_strong_tau_leaves_without_solution() -> None:
+    """A drawn gap; tau is the mean pressure."""
+    row = FIXED | {"control": "load", "tau": 0.0, "coupling": 0.45, "elements": 8, "borders": "periodic"}
+    drawn = posed(row, 0, 1e-8)
+    assert drawn.coupling is not None
+    assert drawn.load is not None
+    strong = replace(drawn, coupling=replace(drawn.coupling, tau=drawn.load / drawn.area))
+    assert not own.solve(strong).converged
+    assert own.solve(replace(strong, coupling=None)).converged
 
 
 def test_a_memory_is_judged_by_all_problems_in_turn() -> None:
