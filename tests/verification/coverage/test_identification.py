@@ -116,6 +116,7 @@ def test_a_hardness_to_fit_is_wrong_in_the_scene_and_right_in_the_rows(
     assert abs(off - 1) > 1e-3
 
 
+@pytest.mark.nightly
 def test_a_fit_of_a_table_covers_its_truth() -> None:
     found = fitted(SETS["drawn"], 300)
     assert (found["tau"], found["beta"], found["mu"], found["warned"]) == (True, True, True, True)
