@@ -17,6 +17,7 @@ import os, time
 import numpy as np
 from verification.framework.case import Measured, Unavailable
 from verification.framework.registry import case, family
+from functools import partial
 case = partial(case, title="t", claim="c", source="s", tolerance_reason="exact")
 """
 

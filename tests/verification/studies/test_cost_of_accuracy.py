@@ -81,7 +81,7 @@ def test_a_reference_is_even_and_twice_as_fine(reference: str, status: int) -> N
 
 
 def test_the_command_makes_the_committed_document(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cost_of_accuracy, "solve_grids", lambda scene: solve_grids(scene, (8, 12), 16))
+    monkeypatch.setattr(cost_of_accuracy, "solve_grids", lambda scene: solve_grids(scene, (16, 24), 32))
     monkeypatch.setattr(cost_of_accuracy, "SEEDS", (1,))
     cost_of_accuracy.main(["--json", str(tmp_path / "costs.json")])
     made = read_result(tmp_path / "costs.json")
