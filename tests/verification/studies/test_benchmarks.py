@@ -182,5 +182,3 @@ def test_a_run_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert entry["seconds"]["median"] > 0
     assert "smooth 32" in capsys.readouterr().out
     assert recorded["conditions"]["versions"] == {OWN: codes()[OWN].version}
-    with pytest.raises(Failed, match="KeyError"):
-        Turns("no such code", "smooth", 32, 1e-8).solve(1e-8, threads=1, limit=60)
