@@ -16,7 +16,7 @@ from verification.exact.sphere_plasticity import kogut_etsion
 SPHERE = Sphere(70.0, 0.14, 8.8e10)
 
 
-@pytest.mark.parametrize("r", [0.0, 0.3, 0.999, 1.0, 1.7, 20.0])
+@pytest.mark.parametrize("r", [0.0, 0.999, 1.7])
 def test_a_loaded_circle_displaces_as_the_quadrature_says(r: float) -> None:
     exact, _ = displacement(lambda s: mp.mpf(1), 1.0, r, 1.0)
     assert disc_displacement(np.array([r]), np.array([1.0]))[0] == pytest.approx(exact, rel=1e-10)

@@ -64,10 +64,10 @@ FAULTS = {
 @pytest.mark.parametrize(
     ("fault", "slugs"),
     [
-        ("coupling reversed", ("full-contact-sliding", "sliding-wave-shift", "sheared-sphere-shift")),
-        ("one per cent stiffer", ("hertz-ellipse-peak", "square-punch-stiffness", "jgh-approach")),
+        ("coupling reversed", ("full-contact-sliding", "sliding-wave-shift")),
+        ("one per cent stiffer", ("hertz-ellipse-peak", "jgh-approach")),
         ("without tau", ("sheared-sphere-shift", "coupled-indentation")),
-        ("transposed", ("hertz-ellipse-pressure", "full-contact-sliding")),
+        ("transposed", ("hertz-ellipse-pressure",)),
         ("half an element off", ("cone-pressure", "full-contact-rough")),
         ("single precision", ("westergaard-full", "full-contact-rough")),
     ],
