@@ -25,6 +25,6 @@ image = axes.imshow(
 )
 figure.colorbar(image, label="contact pressure (GPa)")
 axes.set(xlabel="x, along the sliding (mm)", ylabel="y (mm)", xlim=(-0.7, 0.7), ylim=(-0.7, 0.7))
-cap = copper.hardness / 1e9
-axes.set_title(f"mu = {mu:.4f} ± {bar:.4f}, A = {area:.3f} ± {area_bar:.3f} mm²\npressures capped at {cap:g} GPa")
+numbers = f"mu = {mu:.4f} ± {bar:.4f}, A = {area:.3f} ± {area_bar:.3f} mm²"
+axes.set_title(f"{numbers}\npressures capped at {copper.hardness / 1e9:g} GPa")
 figure.savefig(PICTURE, dpi=100)
