@@ -82,6 +82,11 @@ def test_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     printed = capsys.readouterr().out
     assert printed.startswith("[surface, self_affine]\n  hurst")
     assert "0 < H <= 1" in printed
+    assert main(["keys", "gaussian", "--json", "-"]) == 0  # the name of a table
+    document = json.loads(capsys.readouterr().out)
+    assert [key["name"] for key in document["surface, gaussian"]] == [
+        key.name for key in TABLES["surface, gaussian"]
+    ]
     assert main(["keys", "no-such-word"]) == 1
     assert capsys.readouterr().out == "no key has this word; what is not modelled: docs/limits.md\n"
     assert main(["keys", "tau", "--json", "-"]) == 0
