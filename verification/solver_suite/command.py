@@ -177,8 +177,7 @@ def read_answer(directory: Path) -> Answer:
 
 
 def _read_table(path: Path) -> Array:
-    """Return the numbers between commas; ValueError says which line has something else, or another number of
-    them."""
+    """Return the numbers between commas; ValueError names the line with others, or another count."""
     rows: list[list[float]] = []
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
         if not line:

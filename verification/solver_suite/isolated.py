@@ -138,8 +138,7 @@ class Remote:
         return abilities
 
     def _greeting(self) -> Abilities:
-        """Return the abilities of the solver. Raises `InputError` for one that is refused, or whose process
-        is lost."""
+        """Return the solver's abilities. Raises `InputError` if it is refused, or its process is lost."""
         try:
             said, _ = process.reply(self._process, self._folder / "0", START)
             if "abilities" in said:
@@ -165,8 +164,7 @@ def run(
     tick: Callable[[Result], None] = lambda result: None,
     left: Callable[[str], None] = lambda process: None,
 ) -> list[Result]:
-    """Return the results of the checks that match ``globs`` (all without any), with ``timeout`` seconds for
-    one problem.
+    """Return the results of checks that match ``globs`` (or all), ``timeout`` seconds a problem.
 
     ``among`` takes the place of the suite; ``name`` is what a refusal calls the solver. ``identified`` sees
     the solver's identity, ``begin`` and ``tick`` each check before and after, and ``left`` what the solver
