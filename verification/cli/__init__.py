@@ -105,8 +105,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def joined(arguments: Sequence[str]) -> list[str]:
-    """Return the arguments with negative numbers, and lists that begin with one, joined to the option before
-    them.
+    """Return the arguments with negative numbers, and lists from one on, joined to their option.
 
     By itself, argparse (Python 3.11) takes "-1e-6" and "-3,3" for options, and misses a value.
 

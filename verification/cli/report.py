@@ -79,8 +79,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def registered(solver: str | None) -> dict[str, dict[str, Any]]:
-    """Return the claim, metric, tolerance and tier of this version's cases; of a run of a solver, the suite's
-    too."""
+    """Return claim, metric, tolerance and tier of our cases; of a run of a solver, the suite's too."""
     from verification.framework.registry import load
     from verification.solver_suite import convergence, suite
 
