@@ -112,8 +112,7 @@ class Kappas:
 
 @cache
 def kappas() -> Kappas:
-    """Return the slopes at `PRESSURE`, of the perimeter-corrected area, by each realisation's own rms
-    gradient."""
+    """Return the slopes at `PRESSURE` of the corrected area, by each realisation's own rms gradient."""
     breadths, rows = [], []
     for hurst, ratio, waves in SPECTRA:
         longest = SIDE / waves

@@ -39,8 +39,7 @@ _STEPS = 20_000  # at most, of L-BFGS-B
 
 
 def table2_scene() -> rf.Scene:
-    """Return Table 2's contact as far as the paper tells it: "a half-space and a sphere with a rough
-    surface".
+    """Return Table 2's contact as the paper has it: "a half-space and a sphere with a rough surface".
 
     Sphere, moduli, load and side are those of Table 1, the roughness is the only one that the paper gives
     its sphere, 0.084 um; the half-space is smooth, and there is no friction ("static contact").
