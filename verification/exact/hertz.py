@@ -53,8 +53,7 @@ class Sphere:
         return self.peak_pressure * np.sqrt(np.maximum(0.0, 1 - rho**2))
 
     def displacement(self, r: ArrayLike) -> Array:
-        """Return the normal displacement of both bodies together (m), inside and outside: Johnson (3.41a),
-        (3.42a)."""
+        """Return both bodies' normal displacement (m), inside and outside: Johnson (3.41a), (3.42a)."""
         rho = np.asarray(r, dtype=float) / self.contact_radius
         outer = np.maximum(rho, 1.0)
         inside = np.pi / 2 * (2 - rho**2)
@@ -69,8 +68,7 @@ class Sphere:
 
 @dataclass(frozen=True)
 class Ellipse:
-    """Paraboloid ``curvature_x`` x^2/2 + ``curvature_y`` y^2/2 (1/m), ``load`` (N), reduced ``modulus`` E*
-    (Pa).
+    """Paraboloid ``curvature_x`` x^2/2 + ``curvature_y`` y^2/2 (1/m), ``load`` (N), ``modulus`` E* (Pa).
 
     >>> round_, sphere = Ellipse(70.0, 1 / 0.14, 1 / 0.14, 1e11), Sphere(70.0, 0.14, 1e11)
     >>> bool(np.isclose(round_.semi_axes[0], sphere.contact_radius, rtol=1e-14))

@@ -91,8 +91,7 @@ def kappa(area_fraction: ArrayLike, pressure: ArrayLike, modulus: float, rms_gra
 
 
 def spectral_rms_gradient(heights: Array, side: float) -> float:
-    """Return the root mean square gradient (m/m) of a periodic surface ``(M, M)`` (m) over a square of
-    ``side`` (m), by Parseval.
+    """Return the rms gradient (m/m) of periodic ``(M, M)`` heights over a ``side`` (m), by Parseval.
 
     >>> x = np.arange(8) / 8
     >>> wave = np.cos(2 * np.pi * x)[:, None] * np.ones(8)
