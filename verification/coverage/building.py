@@ -159,8 +159,7 @@ _DIGITS = {"numbers": 6, "first_contact": 5, "peak": 5, "faces": 5}
 
 
 def _plain(grid: GridFeatures) -> dict[str, Any]:
-    """Return the features as short plain values: shares of faces to 0.01, parts of error bars summed but for
-    waves'."""
+    """Return short plain values: shares of faces to 0.01, parts of error bars summed but for waves'."""
     record = asdict(grid)
     record["highest_areas"] = ()
     record["faces"] = [[k, round(n, 2)] for k, n in enumerate(grid.faces) if n >= 0.005]

@@ -210,8 +210,7 @@ def _mostly_contact(draw: _Draw) -> rf.Surface:
 
 
 def _rounded_punch(draw: _Draw) -> rf.Surface:
-    """Return a punch with a rounded rim between like bodies, of which contact radius and pressure are
-    known."""
+    """Return a rounded punch between like bodies, of known contact radius and pressure."""
     draw.size, draw.periodic, draw.upper = (SIDE, SIDE), False, draw.lower
     draw.modulus = Pair(lower=draw.lower, upper=draw.lower).reduced_modulus
     a = SIDE * draw.log(0.08, 0.3)

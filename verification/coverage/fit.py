@@ -76,8 +76,7 @@ def _transverse_row(grid: GridFeatures, reference: GridFeatures, one: Solved) ->
 
 
 def _peak_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row | None:
-    """Return the error of the parabola's peak, over it; none where the hardness caps it or nothing bounds
-    it."""
+    """Return the relative error of the parabola's peak; none at the hardness or without bound."""
     if grid.yields or not (grid.peak.smooth and reference.peak.smooth):
         return None
     height = reference.peak.height

@@ -83,8 +83,7 @@ def _smooth(dice: _Dice) -> rf.Scene:
 
 
 def _barrel(dice: _Dice) -> rf.Scene:
-    """Draw a contact elongated up to ten to one: nearly a cylinder, without the ends that Eq. (7) leaves
-    singular."""
+    """Draw a contact up to ten to one: nearly a cylinder, without the ends singular by Eq. (7)."""
     ball, ratio = dice.ball(), dice.log(1.5, 10)
     root = math.sqrt(ratio)
     shape = Barrel(ball.R / root, ball.R * root)

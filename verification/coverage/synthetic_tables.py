@@ -86,8 +86,7 @@ class _Draw(Dice):
     def table(
         self, kind: str, scene: rf.Scene, span: float, count: int, noise: float, most: float, grid: int
     ) -> SyntheticTable:
-        """Return friction at loads from the scene's over ``span`` up to it, and at a new one up to ``most``
-        of it.
+        """Return friction at loads over ``span`` up to the scene's, and at a new one up to ``most`` of it.
 
         Noise is normal, of a relative standard deviation.
         """
