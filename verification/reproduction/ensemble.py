@@ -61,8 +61,7 @@ QUICK: Mapping[str, tuple[int, Mapping[str, Iterable[float]]]] = {
 
 @cache
 def rows_at(tier: str, name: str) -> tuple[Row, ...]:
-    """Return all rows of a shipped study, or in the quick tier those of its part on `QUICK_MESH` elements a
-    side."""
+    """Return all rows of a shipped study; in the quick tier those on `QUICK_MESH` elements a side."""
     if tier == "full":
         return rows(read_study(name))
     study, (realisations, vary) = read_study(name), QUICK[name]
