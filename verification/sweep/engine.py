@@ -159,8 +159,7 @@ def _through(executor: Executor, runs: Iterable[Run]) -> Done:
 
 @contextmanager
 def _here(workers: int) -> Iterator[Executor]:
-    """Yield this process, or fresh interpreters ('spawn') with one thread each, that end when this process
-    does."""
+    """Yield this process, or fresh interpreters ('spawn') with one thread each, that end with it."""
     if workers == 0:
         thread = ThreadPoolExecutor(1)
         try:

@@ -49,8 +49,7 @@ def shipped_studies() -> tuple[str, ...]:
 
 
 def study_from_dict(table: Mapping[str, Any], folder: Path = Path(), *, keep_going: bool = False) -> Study:
-    """Return the study of a parsed TOML table, refused for all that its runs would be refused for
-    (`posable`)."""
+    """Return the study of a parsed TOML table, refused for all that its runs would be (`posable`)."""
     _refuse_unknown("study", table, KEYS)
     name = table.get("scene")
     if not isinstance(name, str) or not name:
@@ -93,8 +92,7 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path(), *, keep_goi
 
 
 def _with_usable_files(study: Study, keep_going: bool) -> Study:
-    """Return the study without the varied files that are refused; without ``keep_going`` all of them at
-    once."""
+    """Return the study without refused files; without ``keep_going`` all are refused at once."""
     unusable = posable.unusable_files(study)
     if unusable and not keep_going:
         said = "".join(f"\n  {reason}" for reason in unusable.values())
