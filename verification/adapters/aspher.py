@@ -23,8 +23,7 @@ _ITERATIONS = 5000
 
 
 def press(problem: ContactProblem, **options: str) -> PublishedAnswer:
-    """Return the pressures of ``solve_nested`` with its ``options``, or of ``ContactSolver`` where M is not
-    64 2^k.
+    """Return the pressures of ``solve_nested`` with its ``options``; of ``ContactSolver`` if M is not 64 2^k.
 
     Its Frank-Wolfe error is the mean gap under the pressure over the range of the gap, and over one unit of
     length where the gap is flat: the unit is ``P / (E* side)``, about the approach, to give that a meaning.

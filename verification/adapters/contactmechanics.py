@@ -68,8 +68,7 @@ def _half_space(package: ModuleType, problem: ContactProblem, mean_stiffness: fl
 
 
 def _tolerances(problem: ContactProblem) -> dict[str, float]:
-    """Return the absolute ones in m and N: the defaults are not meant for SI units, nor for a relative gap of
-    1e-8.
+    """Return the absolute ones in m and N: the defaults fit neither SI units nor a relative gap of 1e-8.
 
     Penetrations up to ``pentol`` under the pressure make at most twice that of mean gap.
     """

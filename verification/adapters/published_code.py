@@ -86,8 +86,7 @@ class PublishedCode:
 
 
 def closure(problem: ContactProblem) -> float:
-    """Return the mean gap under the pressure, ``sum f (v - min v) / sum f``, at which the tolerance is met
-    (m).
+    """Return the mean gap under the pressure (m) that meets the tolerance, ``sum f (v - min v) / sum f``.
 
     The relative gap is that over half the mean displacement under the pressure, ``depth``. No contact of load
     P in a domain has a smaller one than the square punch that contains it, 0.87 P / (E* max(Lx, Ly)); at an
@@ -108,8 +107,7 @@ def closure(problem: ContactProblem) -> float:
 
 
 def _flattening(problem: ContactProblem) -> float:
-    """Return the elastic energy (J) of a periodic surface in full contact: pressures ``E* q/2`` times its
-    waves."""
+    """Return the elastic energy (J) of periodic full contact: pressures ``E* q/2`` times its waves."""
     x, y = (2 * np.pi * np.fft.fftfreq(n, d) for n, d in zip(problem.shape, problem.spacings, strict=True))
     wave = np.hypot(x[:, None], y)
     pressure = np.fft.ifft2(np.fft.fft2(problem.gap) * wave * (0.5 * problem.reduced_modulus)).real

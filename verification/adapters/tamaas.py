@@ -30,8 +30,7 @@ _GAP_FORMULATION = 0.3
 
 
 def press(problem: ContactProblem, *, second_step: bool = True) -> PublishedAnswer:
-    """Return the pressures of the Polonsky-Keer solver. Its error is the mean gap under the pressure over
-    std(heights).
+    """Return the Polonsky-Keer pressures; the solver's error is the mean gap under them over std(heights).
 
     Loads are mean pressures. A periodic approach is minus the mean gap, which the same solver takes as
     constraint of its gap formulation. ``second_step=False`` gives the negative control. Raises `Unsupported`
