@@ -289,7 +289,6 @@ def _finite(name: str, number: Any) -> float:
 
 
 def _place(failure: BaseException) -> str:
-    """Return the file name and line where it was raised; no directories, so results do not depend on the
-    machine."""
+    """Return file name and line where it was raised; no directories, which differ by machine."""
     frames = traceback.extract_tb(failure.__traceback__)
     return f"{frames[-1].filename.rsplit('/', 1)[-1]}:{frames[-1].lineno}" if frames else "no traceback"
