@@ -70,8 +70,7 @@ def class_scene(name: str, seed: int) -> rf.Scene:
 def solve_grids(
     scene: rf.Scene, grids: Sequence[int] = GRIDS, reference: int = REFERENCE
 ) -> list[dict[str, Any]]:
-    """Return a row for each grid: work in transforms of 256 x 256 elements, seconds, relative errors and
-    error bars.
+    """Return a row a grid: work in transforms of 256 x 256, seconds, relative errors and error bars.
 
     Both are of the numbers that are not zero, and infinite where the grid's state is not settled. Raises
     ArithmeticError where the reference is not.

@@ -56,8 +56,7 @@ TABLE: dict[str, Number] = {
 def newest(
     runs: Sequence[Mapping[str, Any]], codes: frozenset[str] = EVERY
 ) -> dict[tuple[str, int, int], tuple[Ratios, Rows]]:
-    """Return the ratios and rows by surface, grid and threads, of the last run in which all of the codes took
-    part."""
+    """Return ratios and rows by surface, grid and threads, of the last run in which all codes took part."""
     found: dict[tuple[str, int, int], tuple[Ratios, Rows]] = {}
     for run in runs:
         if {row["code"] for row in run["rows"]} >= codes:

@@ -57,14 +57,12 @@ class Turns:
 
 
 def error(found: Mapping[str, Any]) -> float:
-    """Return the residual for the target: the recomputed gap, or with coupling the certificate's worst
-    residual."""
+    """Return the residual for the target: recomputed gap, with coupling the certificate's worst one."""
     return float(found["gap"] if found["residual"] is None else found["residual"])
 
 
 def tuned_turns(name: str, kind: str, M: int, last: Turns | None, threads: int, limit: float) -> Turns:
-    """Return the code with a tolerance of its own that meets the target; or why it takes no part on this
-    grid.
+    """Return the code with a tolerance that meets the target; or why it takes no part on this grid.
 
     ``last`` are its turns on the next coarser grid: a peer's search goes on from their tolerance.
     """
