@@ -182,8 +182,7 @@ def curves(
 
 
 def maps(fields: Mapping[str, str], *, side: str | None, unit: str, colours: str = "viridis") -> Draw:
-    """Return the maps (key to title) of arrays ``[i, j]`` along x and y, one colour bar each; zero is left
-    blank."""
+    """Return maps (key to title) of arrays ``[i, j]`` along x, y, one colour bar each; zero is blank."""
 
     def draw(canvas: Canvas, data: Data) -> None:
         panels = canvas.subplots(len(fields), 1, squeeze=False)[:, 0]
@@ -213,8 +212,7 @@ def _scale(axes: Axes, log: str) -> None:
 
 
 def _few_ticks(axes: Axes, x: np.ndarray[Any, np.dtype[np.float64]]) -> None:
-    """Set the ticks at the points of a logarithmic axis within two decades, where minor ones would be
-    labelled.
+    """Set ticks at the points of a logarithmic axis within two decades, where labels would crowd.
 
     Those too close to the last one labelled have no tick.
     """

@@ -144,8 +144,7 @@ def revisions_of(evidence: Evidence) -> list[tuple[str, str, str]]:
 
 
 def newest(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
-    """Return the provenance of a study's document, or of its newest run; else the document, if it is
-    dated."""
+    """Return the provenance of a study's document or newest run; else the document, if it is dated."""
     listed = [entry for value in document.values() if isinstance(value, list) for entry in value]
     records = [
         item["provenance"]

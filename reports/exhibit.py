@@ -120,8 +120,7 @@ class Album:
         self._sheet = StyleSheet()
 
     def add(self, figure: Figure, data: Data, title: str = "") -> Mapping[str, Any] | None:
-        """Return the figure for the page; None for one that is on the page already, or whose series are
-        missing.
+        """Return the figure for the page; None for one already there, or without its series.
 
         A figure that is shown has ``svg``, ``caption``, ``name``, and ``csv``: an address of all data of its
         case, or a link to the figure, ``table``, that has them. ``title`` is the case's.

@@ -175,8 +175,7 @@ def _check_verdict(case: Case) -> None:
 
 
 def _error_follows(case: Case) -> bool:
-    """Return True if the error is that of value, reference and metric, and the reference certain enough to
-    judge."""
+    """Return True if value, reference and metric give the error, with a certain reference."""
     value, reference, error, metric = (case[name] for name in ("value", "reference", "error", "metric"))
     if metric in ("at_most", "at_least"):
         return reference is None and bool(error == value) and (metric == "at_least" or value >= 0)
@@ -209,15 +208,13 @@ RECORDED = "recorded"
 
 
 def shown_status(case: Case) -> str:
-    """Return the status for people: a pass by a tolerance that was set from the result is "recorded", no
-    pass."""
+    """Return the status for people: a pass by a tolerance set from the result is "recorded"."""
     recorded = case["status"] == "pass" and case["tolerance_reason"].startswith(RECORDED)
     return RECORDED if recorded else str(case["status"])
 
 
 def worst(cases: list[Case]) -> str:
-    """Return the status that decides about several cases: any error or failure outweighs, then what did not
-    run."""
+    """Return the status that decides over cases: error or failure first, then what did not run."""
     present = {case["status"] for case in cases}
     return next(status for status in ("error", "fail", "unavailable", "pass") if status in present)
 

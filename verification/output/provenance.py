@@ -30,8 +30,7 @@ def or_none(ask: Callable[[], T]) -> T | None:
 
 
 def versions() -> dict[str, str | None]:
-    """Return the version of Python, of this package and of each dependency; None for one that is not
-    found."""
+    """Return the version of Python, of this package and each dependency; None for one not found."""
     from refimpl import __version__  # here and not above: --help is quick
 
     found: dict[str, str | None] = {"python": platform.python_version(), DISTRIBUTION: __version__}
@@ -41,8 +40,7 @@ def versions() -> dict[str, str | None]:
 
 
 def revision() -> dict[str, str | bool | None]:
-    """Return the checkout's commit and whether its tree is `dirty`; `commit` is None for an installed
-    package.
+    """Return the checkout's commit and whether it is `dirty`; `commit` is None if installed.
 
     Only a checkout that this file is part of counts, not whatever repository lies around an environment.
     """
@@ -78,8 +76,7 @@ def machine() -> dict[str, str | int | None]:
 
 
 def command() -> str:
-    """Return the command line as it could be typed again: `python -m MODULE`, or a program without its
-    directory.
+    """Return the command line to be typed again: `python -m MODULE`, or a program's name.
 
     Of absolute paths only the names are kept: they are this machine's.
     """
@@ -107,8 +104,7 @@ def _is_checkout() -> bool:
 
 
 def _git(root: Path, *arguments: str) -> str | None:
-    """Return the output of a git command, which leaves no lock behind; None when there is no git or no
-    repository."""
+    """Return the output of a git command without a lock; None without git or a repository."""
     try:
         asked = ["git", "--no-optional-locks", "-C", str(root), *arguments]
         done = subprocess.run(asked, capture_output=True, encoding="utf-8", errors="replace", check=True)
