@@ -86,7 +86,6 @@ class Limited:
     identity: Identity = field(default_factory=dict)
 
     def __call__(self, problem: ContactProblem) -> Answer | Array:
-        """Pass the problem on."""
         return self.solver(problem)
 
 
@@ -105,7 +104,6 @@ class Remote:
         self.abilities = self._open()
 
     def __call__(self, problem: ContactProblem) -> Answer:
-        """Return the solver's answer. Raises `Reported` for what became of it instead, and `Unavailable`."""
         if self._lost:
             self.close()
             self._open()

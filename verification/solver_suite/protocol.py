@@ -299,10 +299,7 @@ SolverUnderTest = Callable[[ContactProblem], "Answer | Array"]
 
 
 def abilities_of(solver: SolverUnderTest) -> Abilities:
-    """Return its ``abilities`` attribute, or the defaults: squares of any size, without coupling.
-
-    Raises `InputError` when the attribute is no `Abilities`.
-    """
+    """Return ``abilities``, or squares of any size without coupling. Raises `InputError` for other types."""
     found = getattr(solver, "abilities", None)
     if found is None:
         return Abilities()
@@ -355,7 +352,6 @@ def ask(solver: SolverUnderTest, problem: ContactProblem) -> Answer:
 
 
 def _numbers(answer: Answer) -> dict[str, float]:
-    """Return the numbers that an answer has, by name. Raises `BadAnswer` for what is no finite number."""
     found = {name: getattr(answer, name) for name in NUMBERS if getattr(answer, name) is not None}
     for name, number in found.items():
         real = isinstance(number, numbers.Real) and not isinstance(number, bool)

@@ -58,13 +58,11 @@ def _matrix(problem: ContactProblem, direction: float | None) -> Array:
 
 @lru_cache(maxsize=4)
 def _unit_matrix(shape: tuple[int, int], aspect: float, direction: float | None) -> Array:
-    """Return the same for elements of edge 1 along x and ``aspect`` along y."""
     grid = Grid(shape, (float(shape[0]), shape[1] * aspect))
     return normal_matrix(grid) if direction is None else shear_matrix(grid, direction)
 
 
 def _edges(problem: ContactProblem) -> tuple[float, float]:
-    """Return the edges of an element in units of that along x."""
     return 1.0, problem.spacings[1] / problem.spacings[0]
 
 
@@ -205,10 +203,7 @@ def misfit(problem: ContactProblem, found: Array, exact: Array) -> float:
 
 
 def approach_of(problem: ContactProblem, pressure: Array) -> float:
-    """Return the approach (m) of pressures, as the problem counts it: mean of v over f.
-
-    Raises ValueError where there is no load to carry it.
-    """
+    """Return the approach (m) as the problem counts it: mean of v over f. ValueError without load."""
     if not pressure.sum() > 0:
         raise ValueError("the pressures carry no load: no approach")
     v = displacement(problem, pressure) + problem.gap

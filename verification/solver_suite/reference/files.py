@@ -175,5 +175,4 @@ def licence() -> str:
 
 
 def _text(name: str) -> str:
-    """Return the text of the folder that is filled in."""
     return (HERE / "texts" / name).read_text(encoding="utf-8")

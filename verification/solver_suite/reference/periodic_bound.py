@@ -92,5 +92,4 @@ class _Symbols:
 
 
 def _rounding(v: Array, touch: float) -> float:
-    """Return the rounding of one element's v (m)."""
     return ROUNDING * float(np.finfo(float).eps) * (math.log2(v.size) * float(np.linalg.norm(v)) + abs(touch))
