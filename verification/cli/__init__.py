@@ -78,7 +78,6 @@ class _Version(argparse.Action):
     """Print the version, for which alone `refimpl` is imported: --help is quick."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        """Exit with status 0."""
         from refimpl import __version__
 
         parser.exit(0, f"{parser.prog} {__version__}\n")

@@ -106,7 +106,6 @@ def _share(part: Budget, width: float | None) -> str:
 
 
 def _relative(budgets: Budgets, number: str, name: str) -> str:
-    """Print the change with its 95 % half-width where that is a tenth of it or more."""
     found, answers = budgets.derivatives.found[number], budgets.derivatives
     if found == 0:
         return "-"

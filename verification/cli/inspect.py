@@ -147,7 +147,6 @@ def _shown(value: float, unit: str, deviation: float | None = None) -> str:
 
 
 def _length(value: float) -> str:
-    """Return a length at the scale of the object."""
     factor, unit = next(pair for pair in SCALES if abs(value) >= pair[0])
     return f"{value / (factor or 1e-12):.4g} {unit}"
 

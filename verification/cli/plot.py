@@ -221,7 +221,6 @@ def gap_histogram(axes: Axes, solution: Solution, view: View) -> None:
 
 
 def _histogram(axes: Axes, values: NDArray[Any], top: float, count: int, colour: str) -> None:
-    """Draw the shares of ``count`` elements by value, up to ``top``; nothing without values."""
     import numpy as np
 
     if len(values):

@@ -264,7 +264,6 @@ def _overlay(axes: Axes, where: Mask, view: View, colour: str) -> None:
 
 
 def _show(axes: Axes, picture: NDArray[Any], step: int, view: View, **options: Any) -> Any:
-    """Draw blocks of ``step`` elements over the window; the last ones go on beyond it."""
     left, right, bottom, top = view.extent
     dx, dy = view.edges(step)
     image = axes.imshow(
@@ -277,13 +276,11 @@ def _show(axes: Axes, picture: NDArray[Any], step: int, view: View, **options: A
 
 
 def _bar(axes: Axes, image: Any, title: str, extend: str = "neither") -> None:
-    """Draw a colour bar as tall as the map; its quantity and unit are the map's title."""
     axes.figure.colorbar(image, cax=axes.inset_axes((1.03, 0.0, 0.05, 1.0)), extend=extend)
     axes.set_title(title, loc="left")
 
 
 def _coloured(where: Mask, colour: str) -> Array:
-    """Return an image of the marked elements in one colour, transparent elsewhere."""
     import numpy as np
     from matplotlib.colors import to_rgb
 
@@ -293,7 +290,6 @@ def _coloured(where: Mask, colour: str) -> Array:
 
 
 def _arrow(axes: Axes, direction: float) -> None:
-    """Draw the direction in which the upper body slides, above the map's right end."""
     from matplotlib.text import OffsetFrom
 
     half = 9.0  # points, of the arrow's length
