@@ -69,10 +69,7 @@ def near_field(found: rf.Solution, material: rf.Material, sign: float, reach: in
 
 
 def remedied(scene: rf.Scene, size: int, reach: int = 1) -> rf.Solution:
-    """Return the scene (sliding along x) with near-field coefficients on the slopes to `reach` elements.
-
-    Raises RuntimeError if that does not settle.
-    """
+    """Return the scene with coefficients on the slopes, `reach` elements far. RuntimeError if unsettled."""
     lower, upper = scene.heights(scene.grid(size))
     found = rf.solve(scene, size)
     for _ in range(ROUNDS):

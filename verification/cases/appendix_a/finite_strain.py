@@ -190,7 +190,6 @@ def approaches(slope_deg: float, nu: float, share: float) -> tuple[float, float]
 
 
 def _moment(amplitude: float, modulus: float, load: float) -> float:
-    """Return the mean of height times Westergaard's pressure."""
     x = (np.arange(20000) + 0.5) / 20000 - 0.5
     return float(np.mean(wave_height(x, amplitude) * Wave(load, amplitude, 1.0, modulus).pressure(x)))
 
