@@ -116,6 +116,5 @@ def extrapolated(load_ratio: float, sizes: Sequence[int]) -> tuple[float, float,
 
 
 def _approach(p: Array) -> float:
-    """Return the pressure-weighted mean of u + gap over Delta, the gap counted from first contact."""
     shape, symbol = _cell(len(p))
     return float(np.sum(p * (_displacement(symbol, p) + shape)) / np.sum(p))

@@ -55,7 +55,6 @@ def _offsets(shape: tuple[int, int], edges: tuple[float, float]) -> tuple[Array,
 
 
 def _pairs(grid: Grid) -> tuple[Array, Array]:
-    """Return the offsets along x and y between all element centres, field by row."""
     x, y = (axis.ravel() for axis in np.meshgrid(grid.x, grid.y, indexing="ij"))
     return x[:, None] - x[None, :], y[:, None] - y[None, :]
 
