@@ -101,7 +101,6 @@ def _solved(kind: str, seed: int) -> dict[str, Any]:
 
 
 def _records(path: Path) -> Iterator[dict[str, Any]]:
-    """Yield the lines of a file; one cut short by a kill is skipped."""
     if not path.exists():
         return
     for line in path.read_text(encoding="utf-8").splitlines():
@@ -182,7 +181,6 @@ def as_corrected(features: GridFeatures) -> GridFeatures:
 
 
 def _short(value: Any, digits: int) -> Any:
-    """Return the value with its numbers rounded to significant digits."""
     if isinstance(value, Mapping):
         return {name: _short(one, digits) for name, one in value.items()}
     if isinstance(value, list | tuple):

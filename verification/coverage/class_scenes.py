@@ -83,7 +83,6 @@ def _facets(draw: _Draw) -> rf.Surface:
 
 
 def _strips(draw: _Draw) -> rf.Surface:
-    """Return grooves along a direction of small whole numbers on a square."""
     draw.size = (SIDE, SIDE)
     m, n = ((1, 1), (1, 2), (2, 1), (1, 3), (2, 3), (3, 2))[draw.rng.integers(6)]
     number = int(draw.rng.integers(1, 3))
@@ -100,7 +99,6 @@ def _cut_off(draw: _Draw) -> rf.Surface:
 
 
 def _few_elements(draw: _Draw) -> rf.Surface:
-    """Return a smooth ball whose contact is a few elements wide."""
     draw.periodic, draw.ball, draw.radii = False, True, (0.02, 0.06)
     return rf.Flat()
 
@@ -177,7 +175,6 @@ def _ridges(draw: _Draw) -> rf.Surface:
 
 
 def _both_rough(draw: _Draw) -> rf.Surface:
-    """Return roughness of Eq. (9), self-affine roughness or grooves on either body."""
     laws: list[Kind] = [_isotropic, _self_affine, _oblique, _grooves]
     lower, upper = (laws[k] for k in draw.rng.permutation(len(laws))[:2])
     surface: rf.Surface = lower(draw)
@@ -204,7 +201,6 @@ def _short_waves(draw: _Draw) -> rf.Surface:
 
 
 def _mostly_contact(draw: _Draw) -> rf.Surface:
-    """Return rough planes of which 60 to 95 % are in contact."""
     draw.periodic, draw.ball, draw.pressed_share = True, False, (0.9, 2.2)
     return _isotropic(draw)
 

@@ -210,10 +210,7 @@ def ensemble_table(seed: int) -> SyntheticTable:
 
 
 def true_friction(scene: rf.Scene, load: float) -> float:
-    """Return the corrected mu, extrapolated from `TRUE_GRIDS`.
-
-    Raises ArithmeticError where a solve does not converge.
-    """
+    """Return the corrected mu, extrapolated from `TRUE_GRIDS`. ArithmeticError where one is unsolved."""
     features = []
     for grid in TRUE_GRIDS:
         solution = rf.solve(replace(scene, load=load), grid)
