@@ -85,10 +85,7 @@ def rows(study: Study) -> tuple[Row, ...]:
 
 
 def column(found: Iterable[Row], quantity: str, **where: float) -> list[float]:
-    """Return the values of a quantity in the rows whose coordinates equal those given, in order.
-
-    Raises LookupError when there are none.
-    """
+    """Return the values of a quantity in rows at given coordinates, in order; LookupError for none."""
     chosen = [row[quantity] for row in found if all(row[k] == v for k, v in where.items())]
     if not chosen:
         raise LookupError(f"no run has {where}")

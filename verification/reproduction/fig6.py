@@ -75,7 +75,6 @@ class Profile:
 
 
 def _rms(pressure: Array) -> float:
-    """Return the root mean square over rings of equal area, over Hertz' peak."""
     return float(np.sqrt(np.mean(pressure**2))) / hertz().peak_pressure
 
 
