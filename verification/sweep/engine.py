@@ -151,7 +151,6 @@ def _failure(done: Future[tuple[Row, float]]) -> BaseException | None:
 
 
 def _through(executor: Executor, runs: Iterable[Run]) -> Done:
-    """Yield runs as they finish."""
     waiting = {executor.submit(execute, run.inputs): run for run in runs}
     for future in as_completed(waiting):
         yield waiting.pop(future), future
@@ -198,7 +197,6 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def _cluster(address: str) -> Iterator[Executor]:
-    """Use the workers of a running dask.distributed scheduler."""
     try:
         import distributed
 

@@ -150,7 +150,6 @@ class Study:
 
 
 def _random(body: Table) -> Table:
-    """Return the random part of a body; an empty table without one."""
     return next((part for part in body["surface"] if part["kind"] in RANDOM), {})
 
 

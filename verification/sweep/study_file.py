@@ -171,7 +171,6 @@ def _check_settings(settings: Mapping[str, Any]) -> None:
 
 
 def _by_axis(vary: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the table with the full names of tau and beta as the axes that they are."""
     axes = {f"friction.{axis}": axis for axis in FRICTION_AXES}
     for name, axis in axes.items():
         if name in vary and axis in vary:
@@ -190,7 +189,6 @@ def _refuse_doubles(vary: Mapping[str, Any]) -> None:
 
 
 def _values(axis: str, values: object, folder: Path) -> tuple[Any, ...]:
-    """Return the values of an axis; files relative to the study's folder, where they are found there."""
     if axis.endswith(".path"):
         return _paths(axis, values, folder)
     allowed = "a finite number, or a list of different ones"
