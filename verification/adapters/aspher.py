@@ -50,7 +50,6 @@ def press(problem: ContactProblem, **options: str) -> PublishedAnswer:
 
 
 def _halves(M: int) -> bool:
-    """Return whether M is 64 times a power of two."""
     levels, rest = divmod(M, _COARSEST)
     return rest == 0 and levels > 0 and levels & (levels - 1) == 0
 

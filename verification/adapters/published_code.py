@@ -72,11 +72,7 @@ class PublishedCode:
         return identity.of_distribution(self.distribution)
 
     def __call__(self, problem: ContactProblem) -> PublishedAnswer:
-        """Return the peer's answer.
-
-        Raises `Unavailable` where the peer is not installed and `Unsupported` where it cannot pose the
-        problem.
-        """
+        """Return the peer's answer. Raises `Unavailable` without the peer, `Unsupported` where it cannot."""
         if self.installed is None:
             raise Unavailable(f"{self.distribution} is not installed: {self.installation}")
         lacking = self.abilities.lacking(problem)

@@ -63,7 +63,6 @@ class Watched:
         return abilities_of(self.solver)
 
     def __call__(self, problem: ContactProblem) -> Answer:
-        """Return the solver's answer, unchanged."""
         start = time.perf_counter()
         answer = self.solver(problem)
         self.seconds.append(time.perf_counter() - start)
@@ -142,7 +141,6 @@ def summarised(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _short(value: Any) -> Any:
-    """Return the four digits of a number: no report shows more."""
     return float(f"{value:.4g}") if isinstance(value, float) else value
 
 

@@ -65,10 +65,7 @@ def press(problem: ContactProblem, *, second_step: bool = True) -> PublishedAnsw
 
 
 def _saturated(problem: ContactProblem, unit: float) -> PublishedAnswer:
-    """Return the pressures up to the hardness; ``unit`` (Pa) is that of moduli and pressures: E* to be right.
-
-    Raises `Unsupported` for an approach: the solver takes loads.
-    """
+    """Return pressures up to the hardness in units of ``unit`` (Pa), E*. `Unsupported` for an approach."""
     tm = imported("tamaas")
     if problem.load is None or problem.hardness is None:
         raise Unsupported("tamaas does not offer: an approach with a hardness")
