@@ -130,7 +130,6 @@ class _Balls:
         return self.number(float(self.known.tan_x[element])), self.number(float(self.known.tan_y[element]))
 
     def _cosines(self, element: tuple[int, int]) -> tuple[Ball, Ball, Ball]:
-        """Return cos theta_x, cos theta_y and their product."""
         cos_x, cos_y = (1 / (1 + t * t).sqrt() for t in self._tangents(element))
         return cos_x, cos_y, cos_x * cos_y
 
@@ -138,7 +137,6 @@ class _Balls:
         return self.number(float(self.known.heights.max())) - self.number(float(self.known.heights[element]))
 
     def _by_tau(self, element: tuple[int, int]) -> Ball:
-        """Return the displacement by tau on the contact set."""
         total = self.number(0)
         if self.known.friction.tau:
             for source in self.inside:
