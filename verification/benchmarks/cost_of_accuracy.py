@@ -113,10 +113,7 @@ def coarsest(
 
 
 def costs(realisations: Sequence[Sequence[Mapping[str, Any]]], key: str = "errors") -> list[dict[str, Any]]:
-    """Return the median cost of every demand over realisations; none where one of them meets it nowhere.
-
-    Demands are of "errors", or of "bars".
-    """
+    """Return the median cost of every demand of "errors" or "bars"; none where one realisation fails it."""
     rows = []
     for quantity, demand in itertools.product(realisations[0][0][key], DEMANDS):
         offers = [coarsest(grids, quantity, demand, key) for grids in realisations]

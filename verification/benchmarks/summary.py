@@ -77,14 +77,12 @@ def _over(theirs: Sequence[Found], ours: Sequence[Found], clock: str) -> dict[st
 
 
 def _timed(clock: str, theirs: Sequence[Found], ours: Sequence[Found]) -> bool:
-    """Return True where both have a time by that clock in every round."""
     return bool(ours) and all(one[clock] is not None for one in (*theirs, *ours))
 
 
 def _fastest(
     name: str, peers: Mapping[str, Sequence[Found]], ours: Sequence[Found], clock: str
 ) -> dict[str, object]:
-    """Return the peer of the least median ratio, if any was timed by that clock."""
     timed = {code: rounds for code, rounds in peers.items() if _timed(clock, rounds, ours)}
     if not timed:
         return {}
