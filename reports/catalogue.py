@@ -285,7 +285,6 @@ TIMED = ("paper", "production", "NNLS", "L-BFGS-B")
 
 
 def _table2_seconds(data: Data) -> Data:
-    """Return each method's seconds over the paper's grids; none where it ends earlier."""
     seconds = {name: dict(zip(data[f"{name}: M"], data[f"{name}: s"], strict=True)) for name in TIMED}
     grids = data["paper: M"]
     return {"M": grids, **{name: [by_grid.get(M) for M in grids] for name, by_grid in seconds.items()}}

@@ -117,7 +117,6 @@ def words(canvas: Canvas, caption: str) -> str:
 
 
 def _plain(text: str) -> str:
-    """Return the text without the marks of mathematics."""
     return re.sub(r"[$\\{}]", "", text).strip()
 
 
@@ -212,10 +211,7 @@ def _scale(axes: Axes, log: str) -> None:
 
 
 def _few_ticks(axes: Axes, x: np.ndarray[Any, np.dtype[np.float64]]) -> None:
-    """Set ticks at the points of a logarithmic axis within two decades, where labels would crowd.
-
-    Those too close to the last one labelled have no tick.
-    """
+    """Set ticks at the points of a logarithmic axis within two decades; close ones have none."""
     if not 0 < x.max() < 100 * x.min():
         return
     kept = [x.min()]

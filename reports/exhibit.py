@@ -84,7 +84,6 @@ def as_csv(figure: Figure, data: Data) -> str:
 
 
 def _six(value: Any) -> Any:
-    """Return the six digits of a float, as many as a result is recorded with for figures."""
     return f"{value:.6g}" if isinstance(value, float) else value
 
 
@@ -98,7 +97,6 @@ def _is_column(values: object) -> bool:
 
 
 def _write_block(write: Callable[[Sequence[Any]], Any], name: str, values: Any) -> None:
-    """Write a mapping, an array of rows, or a single value below its name."""
     write([name])
     if isinstance(values, Mapping):
         for key, value in values.items():

@@ -127,7 +127,6 @@ def _worst(numbers: Sequence[Number], count: int = 3) -> list[Number]:
 
 
 def _hertz(case: Case) -> str:
-    """Return the computed and exact number, and the relative error; empty for another case."""
     name = HERTZ.get(case["id"])
     if name is None or case["value"] is None or case["reference"] is None:
         return ""

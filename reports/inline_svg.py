@@ -76,7 +76,6 @@ def _short(match: re.Match[str]) -> str:
 
 
 def _named(body: str, name: str) -> str:
-    """Put the figure's name before ids of definitions, and remove those of groups."""
     ids = {old: f"{name}-{k}" for k, old in enumerate(dict.fromkeys(_DEFINED.findall(body)))}
     used = {old for old in ids if f"#{old})" in body or f'"#{old}"' in body}
     for old in sorted(used, key=len, reverse=True):

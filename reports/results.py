@@ -41,7 +41,6 @@ def _texts(value: object) -> bool:
 
 
 def _id(value: object) -> bool:
-    """Return True if the value is "subject/slug" without blanks."""
     return isinstance(value, str) and all(value.partition("/")) and len(value.split()) == 1
 
 
@@ -54,7 +53,6 @@ def _one_of(*values: str) -> Kind:
 
 
 def _command(value: object) -> bool:
-    """Return True if the value is a text that a shell would split into words."""
     try:
         return isinstance(value, str) and bool(shlex.split(value))
     except ValueError:  # an open quote
@@ -62,7 +60,6 @@ def _command(value: object) -> bool:
 
 
 def _labels(value: object) -> bool:
-    """Return True if the value is a table of texts, numbers and None."""
     return isinstance(value, Mapping) and all(
         item is None or _text(item) or _number(item) for item in value.values()
     )
@@ -118,10 +115,7 @@ def shaped(what: str, error: Callable[[str], ResultFileError] = ResultFileError)
 
 
 def check(results: object) -> Mapping[str, Any]:
-    """Return the results if they follow the schema, verdicts follow from numbers, and counts from cases.
-
-    Raises ResultFileError.
-    """
+    """Return results of the schema, of verdicts from numbers, counts from cases. Raises ResultFileError."""
     if not isinstance(results, Mapping) or results.get("format") != FORMAT:
         raise ResultFileError(f"not a file of the format {FORMAT!r}")
     _check_values(results, "the file")

@@ -61,7 +61,6 @@ def _table(kind: str, newest: Mapping[tuple[str, int], Sequence[Row]]) -> Table:
 
 
 def _measured(column: Callable[[Row], Cell]) -> Callable[[Row], Cell]:
-    """Return the column, and None for a code that was not timed."""
     return lambda row: column(row) if "seconds" in row else None
 
 

@@ -54,10 +54,7 @@ def revision() -> dict[str, str | bool | None]:
 
 
 def is_known(commit: str) -> bool:
-    """Return whether the checkout has the commit; True where that cannot be found out.
-
-    An installed package has no history, and a shallow clone not all of it.
-    """
+    """Return whether the checkout has the commit; True where unknown: if installed, or a shallow clone."""
     if not _is_checkout() or _git(ROOT, "rev-parse", "--is-shallow-repository") != "false":
         return True
     named = re.fullmatch("[0-9a-f]{7,64}", commit)  # no option of git's
@@ -76,10 +73,7 @@ def machine() -> dict[str, str | int | None]:
 
 
 def command() -> str:
-    """Return the command line to be typed again: `python -m MODULE`, or a program's name.
-
-    Of absolute paths only the names are kept: they are this machine's.
-    """
+    """Return the command line to be typed again: `python -m MODULE`, or names instead of absolute paths."""
     arguments = [Path(word).name if Path(word).is_absolute() else word for word in sys.argv[1:]]
     module = sys.modules["__main__"].__spec__  # None of scripts, such as pip's for an entry point
     if module is None:

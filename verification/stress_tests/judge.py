@@ -148,7 +148,6 @@ def exact_error(scene: rf.Scene, solution: rf.Solution, **options: Any) -> tuple
 
 
 def _untouched(oracle: Oracle, solution: rf.Solution) -> tuple[float, str]:
-    """Judge no contact: right where the exact gap is nowhere below the approach."""
     if oracle.approach is None:
         return 1.0, "no contact under a load"
     overlap = oracle.approach - min(oracle.h)
