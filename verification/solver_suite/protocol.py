@@ -251,9 +251,6 @@ class Abilities:
     def named(cls, names: str, *, largest: int | None = None, precision: float = 1e-8) -> Abilities:
         """Return only the abilities in a comma-separated list.
 
-        >>> Abilities.named("aperiodic,load,rectangle,oblong elements").periodic
-        False
-
         Raises `InputError` for an unknown name, and where no problem at all could be posed.
         """
         words = (name.strip().replace("-", " ").split() for name in names.split(","))
@@ -268,12 +265,7 @@ class Abilities:
         return cls(**{name: name in given for name in FLAGS}, largest=largest, precision=precision)
 
     def lacking(self, problem: ContactProblem) -> str | None:
-        """Return the requirement of the problem beyond these abilities, or None.
-
-        >>> problem = ContactProblem(np.zeros((2, 2)), 1e-6, 1e9, load=1.0, periodic=True)
-        >>> Abilities(periodic=False).lacking(problem)
-        'periodic'
-        """
+        """Return the requirement of the problem beyond these abilities, or None."""
         required = {
             "periodic": problem.periodic,
             "aperiodic": not problem.periodic,
