@@ -24,12 +24,7 @@ corners.
 
 @dataclass(frozen=True)
 class Patch:
-    """``pressure`` (Pa) on ``width`` (along x) by ``height`` (m) about the origin, ``modulus`` E* (Pa).
-
-    >>> unit = Patch(pressure=1.0, width=2.0, height=2.0, modulus=1.0)
-    >>> bool(np.isclose(unit.displacement(0, 0), 8 / np.pi * np.log(1 + np.sqrt(2)), rtol=1e-14))
-    True
-    """
+    """``pressure`` (Pa) on ``width`` (along x) by ``height`` (m) about the origin, ``modulus`` E* (Pa)."""
 
     pressure: float
     width: float

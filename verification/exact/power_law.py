@@ -61,12 +61,7 @@ class PowerLaw:
 
 @dataclass(frozen=True)
 class Cone:
-    """Rigid cone of surface ``slope`` (m/m), ``load`` (N), ``modulus`` E* (Pa): Sneddon's own closed forms.
-
-    >>> cone = Cone(load=1.0, slope=0.1, modulus=1e9)
-    >>> cone.mean_pressure == cone.modulus * cone.slope / 2
-    True
-    """
+    """Rigid cone of surface ``slope`` (m/m), ``load`` (N), ``modulus`` E* (Pa): Sneddon's closed forms."""
 
     load: float
     slope: float

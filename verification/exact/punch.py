@@ -35,12 +35,7 @@ UNCERTAINTY_SQUARE = 2e-6
 
 @dataclass(frozen=True)
 class CircularPunch:
-    """Flat end of ``radius`` a (m) under ``load`` (N), reduced ``modulus`` E* (Pa).
-
-    >>> punch = CircularPunch(load=3.0, radius=1.0, modulus=1.0)
-    >>> punch.approach, float(punch.displacement(0.5)), float(punch.displacement(1e6) * 1e6 * np.pi)
-    (1.5, 1.5, 3.0000000000...)
-    """
+    """Flat end of ``radius`` a (m) under ``load`` (N), reduced ``modulus`` E* (Pa)."""
 
     load: float
     radius: float

@@ -24,13 +24,7 @@ UNCERTAINTY = 1e-14
 
 @dataclass(frozen=True)
 class Wave:
-    """``mean_pressure`` (Pa), ``amplitude`` Delta and ``wavelength`` lambda (m), ``modulus`` E* (Pa).
-
-    >>> full = np.pi * 1e9 * 1e-6 / 1e-3
-    >>> half = Wave(mean_pressure=full / 2, amplitude=1e-6, wavelength=1e-3, modulus=1e9)
-    >>> round(half.contact_fraction, 12), round(half.full_contact_pressure / full, 12)
-    (0.5, 1.0)
-    """
+    """``mean_pressure`` (Pa), ``amplitude`` Delta and ``wavelength`` lambda (m), ``modulus`` E* (Pa)."""
 
     mean_pressure: float
     amplitude: float
