@@ -39,12 +39,7 @@ def turning(found: Sequence[Row]) -> list[Turning]:
 
 
 def beyond_mean_slope(direction: Array, values: Array) -> float:
-    """Return the share of variance over directions (rad) beyond first harmonics; as in `Turning`.
-
-    >>> angle = np.radians([0, 60, 120, 180, 240, 300])
-    >>> round(beyond_mean_slope(angle, np.array([3 * np.cos(angle) + np.sin(angle)])), 12)
-    0.0
-    """
+    """Return the share of variance over directions (rad) beyond first harmonics; as in `Turning`."""
     mean_free = values - values.mean(axis=1, keepdims=True)
     harmonic = np.column_stack([np.cos(direction), np.sin(direction)])
     fitted = mean_free @ np.linalg.pinv(harmonic).T @ harmonic.T
