@@ -242,9 +242,6 @@ def jsonable(item: object) -> object:
 
     A map is a list of lists with at least `MAP_SIZE` numbers.
     Raises TypeError for anything that is not a number, a text, a mapping or a series of such.
-
-    >>> jsonable({"x": np.array([1 / 3, np.nan])})
-    {'x': [0.333333, None]}
     """
     return _jsonable(item, SERIES_DIGITS)
 
