@@ -111,11 +111,7 @@ def solver(results: Mapping[str, Any]) -> str | None:
 
 
 def rerun(command: str, case_id: str) -> str:
-    """Return the command that runs one case with the solver, its abilities and limits as in ``command``.
-
-    >>> rerun("rough-friction verify --solver a:b --only 'x/*' --able load --json y", "solver/pins")
-    'rough-friction verify --solver a:b --able load --only solver/pins'
-    """
+    """Return the command that runs one case with the solver, its abilities and limits as in ``command``."""
     words = iter(shlex.split(command)[1:])
     return shlex.join(["rough-friction", *_kept(words), "--only", case_id])
 

@@ -60,14 +60,6 @@ class Exhibit:
 def as_csv(figure: Figure, data: Data) -> str:
     """Return all series of the data as CSV, the figure's own first: lists as columns, mappings as two
     columns, arrays row by row; numbers to six digits.
-
-    >>> from reports.drawing import curves
-    >>> pair = curves("*", "", "h", {"error": "e"}, xlabel="", ylabel="")
-    >>> print(as_csv(pair, {"h": [1, 2], "error": [0.1, None]}))
-    h,error
-    1,0.1
-    2,
-    <BLANKLINE>
     """
     buffer = io.StringIO()
     write = csv.writer(buffer, lineterminator="\n").writerow
