@@ -49,10 +49,7 @@ START = 120.0
 
 @dataclass(frozen=True)
 class Named:
-    """A solver under test by the name of a Python object, ``package.module:function``.
-
-    ``stated`` are fields of `Abilities` that replace those that the object carries; the others stay.
-    """
+    """A Python object, ``package.module:function``; ``stated`` replaces fields of its `Abilities`."""
 
     name: str
     stated: Mapping[str, Any] = field(default_factory=dict)
