@@ -169,10 +169,7 @@ def numbers(profiles: Profiles, solution: rf.Solution) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Judged:
-    """One contact: relative errors by quantity: true, stated, and of first order.
-
-    ``warned``: the solution warns of the half-space.
-    """
+    """One contact: relative errors by quantity (true, stated, of first order), whether ``warned``."""
 
     true: dict[str, float]
     stated: dict[str, float]

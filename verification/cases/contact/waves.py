@@ -1,6 +1,4 @@
-"""Periodic waviness from light to full contact: Westergaard, Johnson-Greenwood-Higginson, and a rough plane
-in full contact.
-"""
+"""Periodic waviness to full contact: Westergaard, Johnson-Greenwood-Higginson, and a rough plane."""
 
 from __future__ import annotations
 
