@@ -25,7 +25,6 @@ from appendix_a.fem3d.patch import normal_integral
 
 Array = NDArray[np.float64]
 
-UNCERTAINTY_CIRCLE = 1e-15
 UNIT_SQUARE_CAPACITANCE = 0.3667880
 """Over 4 pi eps0 and per unit side: our own value (n = 16, 32, 64 of `square_capacitance`, extrapolated)."""
 PUBLISHED_CAPACITANCE = 0.3667874

@@ -49,9 +49,7 @@ def dundurs(lower: tuple[float, float], upper: tuple[float, float]) -> tuple[flo
 
 @dataclass(frozen=True)
 class SlidingCylinder:
-    """``line_load`` (N/m), ``radius`` R (m), ``modulus`` E* (Pa), ``coupling`` d, friction ``tau`` (Pa) and
-    ``beta``.
-    """
+    """``line_load`` (N/m), ``radius`` R (m), ``modulus`` E* (Pa), ``coupling`` d, ``tau`` (Pa), ``beta``."""
 
     line_load: float
     radius: float

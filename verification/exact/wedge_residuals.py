@@ -30,10 +30,7 @@ def derivative_weights(n: int) -> Real:
 
 
 def residuals(r: float, theta: float, gamma: float) -> tuple[float, float]:
-    """Return (r |div sigma|, |mean - centre| of sigma_r + sigma_theta), over the largest component.
-
-    The stencil stays inside the wedge: its step is limited by the faces as well as by the load's ends.
-    """
+    """Return (r |div sigma|, |mean - centre| of sigma_r + sigma_theta) over the largest, inside the wedge."""
     alpha, log_r = np.pi / 2 - gamma, np.log(r)
     to_face = alpha - abs(theta)
     to_end = np.hypot(log_r, to_face)
