@@ -121,10 +121,7 @@ def solved(path: Path) -> list[Solved]:
 
 
 def pack(scenes: Iterable[Solved], path: Path) -> None:
-    """Write scenes as the result file that is committed: features in columns, as short as errors allow.
-
-    Of more than three grids every second one is kept, and the reference.
-    """
+    """Write scenes as the committed file: features in columns, every second grid of more than three."""
     rows = []
     for one in scenes:
         kept = one.grids if len(one.grids) <= _KEPT else (*one.grids[one.seed % 2 : -1 : 2], one.grids[-1])

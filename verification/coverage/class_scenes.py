@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -76,10 +77,6 @@ def _grooves(draw: _Draw, *, zigzag: bool = False) -> rf.Surface:
     phase = draw.angle()
     number, along_y = int(draw.rng.integers(1, 5)), bool(draw.rng.integers(2))
     return Wave(RMS, (0, number) if along_y else (number, 0), phase, zigzag)
-
-
-def _facets(draw: _Draw) -> rf.Surface:
-    return _grooves(draw, zigzag=True)
 
 
 def _strips(draw: _Draw) -> rf.Surface:
@@ -162,18 +159,6 @@ def _profile(draw: _Draw, shape: str) -> rf.Surface:
     return Profile(shape, height, (m * number, n * number), float(draw.rng.random()), top, wall)
 
 
-def _steps(draw: _Draw) -> rf.Surface:
-    return _profile(draw, "steps")
-
-
-def _teeth(draw: _Draw) -> rf.Surface:
-    return _profile(draw, "teeth")
-
-
-def _ridges(draw: _Draw) -> rf.Surface:
-    return _profile(draw, "ridges")
-
-
 def _both_rough(draw: _Draw) -> rf.Surface:
     laws: list[Kind] = [_isotropic, _self_affine, _oblique, _grooves]
     lower, upper = (laws[k] for k in draw.rng.permutation(len(laws))[:2])
@@ -225,7 +210,7 @@ CLASSES: dict[str, Kind] = {
     "grooves": _grooves,
     "self-affine": _self_affine,
     "capped": _isotropic,
-    "facets": _facets,
+    "facets": partial(_grooves, zigzag=True),
     "strips between the axes": _strips,
     "few asperities": _few_asperities,
     "cut off by the border": _cut_off,
@@ -235,14 +220,14 @@ CLASSES: dict[str, Kind] = {
     "ball on data": _data,
     "rounded punches": _rounded_punch,
     "dimpled flats": _dimples,
-    "steps": _steps,
-    "saw teeth": _teeth,
+    "steps": partial(_profile, shape="steps"),
+    "saw teeth": partial(_profile, shape="teeth"),
     "pads": _pads,
     "both bodies rough": _both_rough,
     "short waves": _short_waves,
     "60 to 95 % contact": _mostly_contact,
     "capped dimples": _dimples,
-    "ridges": _ridges,
+    "ridges": partial(_profile, shape="ridges"),
 }
 
 
