@@ -4,8 +4,6 @@ Its default H2 operator approximates the influence coefficients to some 1e-6, be
 here, so the exact one takes its place ("modestly faster", its authors say, up to 2048 x 2048).
 
 Its extra builds from source: that takes a C++17 compiler, CMake, and Eigen (Debian's libeigen3-dev).
-
-``rough-friction verify --solver aspher``
 """
 
 from __future__ import annotations

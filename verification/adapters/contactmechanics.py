@@ -7,8 +7,6 @@ version 1.8.3 calls the uniform pressure of its first iteration converged (`nega
 
 A hardness is an argument of ``minimize_proxy``, as a force of an element. Where most of the contact is at it
 the solver turns to relaxation, and may not end.
-
-``rough-friction verify --solver contactmechanics``
 """
 
 from __future__ import annotations

@@ -9,8 +9,6 @@ than the pins move (`verification.solver_suite.checks.hardness`), it comes to re
 Free space takes two steps: ``registerNonPeriodic`` adds the zero-padded operator to the model, and
 ``setIntegralOperator`` tells the solver to use it. Without the second, Tamaas 2.9.0 solves the periodic
 problem and says nothing; `verification.adapters.negative_controls` keeps that in view.
-
-``rough-friction verify --solver tamaas``
 """
 
 from __future__ import annotations
