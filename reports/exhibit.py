@@ -58,9 +58,7 @@ class Exhibit:
 
 
 def as_csv(figure: Figure, data: Data) -> str:
-    """Return all series of the data as CSV, the figure's own first: lists as columns, mappings as two
-    columns, arrays row by row; numbers to six digits.
-    """
+    """Return all data as CSV, the figure's own first: lists and mappings as columns; six digits."""
     buffer = io.StringIO()
     write = csv.writer(buffer, lineterminator="\n").writerow
     names = dict.fromkeys((*figure.needs, *(name for name, v in data.items() if not isinstance(v, str))))

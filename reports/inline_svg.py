@@ -25,9 +25,7 @@ _STYLE = re.compile(r'style="([^"]*)"')
 
 
 def inline(svg: str, name: str, alt: str) -> str:
-    """Return the drawing as an ``<svg>`` element with a role, its alternative text, and ids that begin with
-    ``name``. Coordinates keep tenths of a point.
-    """
+    """Return an ``<svg>`` with role, alternative text, ids that begin with ``name``; tenths of a point."""
     size = _SIZE.search(svg)
     if size is None:
         raise ValueError("a drawing without a view box")

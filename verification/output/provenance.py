@@ -40,10 +40,7 @@ def versions() -> dict[str, str | None]:
 
 
 def revision() -> dict[str, str | bool | None]:
-    """Return the checkout's commit and whether it is `dirty`; `commit` is None if installed.
-
-    Only a checkout that this file is part of counts, not whatever repository lies around an environment.
-    """
+    """Return this file's checkout's commit and whether it is `dirty`; `commit` is None if installed."""
     if not _is_checkout() or _git(ROOT, "rev-parse", "--show-prefix") != "":
         return {"commit": None, "dirty": None}
     changes = _git(ROOT, "status", "--porcelain")

@@ -27,10 +27,7 @@ MOST_BYTES = 50_000_000
 
 
 def read_result(path: Path) -> Any:
-    """Return the document of a result file, plain or compressed, whatever its name.
-
-    Raises OSError for a file that cannot be read, and ValueError for one that is damaged or not JSON.
-    """
+    """Return the document, plain or compressed. Raises OSError, or ValueError if damaged or not JSON."""
     with path.open("rb") as file:
         content = file.read(MOST_BYTES + 1)  # a device has no end
     if len(content) > MOST_BYTES:
