@@ -68,10 +68,7 @@ def solved(problem: ContactProblem, tolerance: float, method: Method = "fft") ->
 
 
 def scene(problem: ContactProblem) -> rf.Scene:
-    """Return the problem as a scene: the gap is the upper body's surface, the lower one is flat.
-
-    Raises `Unsupported` for a coupling that no pair of Poisson's ratios has.
-    """
+    """Return the problem as a scene, the gap over a flat. Raises `Unsupported` if no nu has its coupling."""
     coupling = problem.coupling
     lower, upper = materials(problem.reduced_modulus, coupling.shear_compliance if coupling else 0.0)
     lower = replace(lower, hardness=problem.hardness)

@@ -249,10 +249,7 @@ class Abilities:
 
     @classmethod
     def named(cls, names: str, *, largest: int | None = None, precision: float = 1e-8) -> Abilities:
-        """Return only the abilities in a comma-separated list.
-
-        Raises `InputError` for an unknown name, and where no problem at all could be posed.
-        """
+        """Return only the abilities of a list with commas. `InputError` if unknown, or if none is posed."""
         words = (name.strip().replace("-", " ").split() for name in names.split(","))
         given = ["_".join(name) for name in words if name]
         domain, control = {"periodic", "aperiodic"} & {*given}, {"load", "approach"} & {*given}
