@@ -93,10 +93,7 @@ def registered(solver: str | None) -> dict[str, dict[str, Any]]:
 
 
 def read_run(path: Path, option: str = "--results") -> Any:
-    """Return a result file of `verify`, checked; raises InputError, naming the option, for anything else.
-
-    A committed file may be a study's as well, which the exhibit that shows it checks.
-    """
+    """Return a checked result file of `verify`, or a study's; raises InputError, naming the option."""
     from reports.results import FORMAT, ResultFileError, check
 
     found = read_or_refuse(option, path)
