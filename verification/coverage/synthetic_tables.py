@@ -86,10 +86,7 @@ class _Draw(Dice):
     def table(
         self, kind: str, scene: rf.Scene, span: float, count: int, noise: float, most: float, grid: int
     ) -> SyntheticTable:
-        """Return friction at loads over ``span`` up to the scene's, and at a new one up to ``most`` of it.
-
-        Noise is normal, of a relative standard deviation.
-        """
+        """Return friction, with normal relative noise, at loads over ``span`` and one up to ``most``."""
         loads = map(float, np.geomspace(scene.load / span, scene.load, count))
         new_load = scene.load * self.log(1 / span, most)
         rows, deviates = [], []
