@@ -70,11 +70,7 @@ def rows_at(tier: str, name: str) -> tuple[Row, ...]:
 
 
 def rows(study: Study) -> tuple[Row, ...]:
-    """Return all rows of a study, solved in this process.
-
-    Raises RuntimeError when a run failed or its certificate does not meet the tolerance: an ensemble with
-    gaps is no ensemble.
-    """
+    """Return all rows of a study, solved here. RuntimeError where one failed or is not certified."""
     with tempfile.TemporaryDirectory() as folder:
         done = sweep(study, Path(folder) / "rows.sqlite", workers=0)
     uncertified = [row["key"] for row in done.rows if row["status"] not in CERTIFIED]
