@@ -79,10 +79,7 @@ class Sweep:
         return [row | {"seconds": took} for row, took in zip(self.rows, self.solve_seconds, strict=True)]
 
     def to_dataframe(self) -> Any:
-        """Return the table as a `pandas.DataFrame`, a column for each parameter varied by its full name too.
-
-        Units are in ``attrs["units"]``. Raises `InputError` where pandas is not installed.
-        """
+        """Return a `pandas.DataFrame` by full names, ``attrs["units"]`` beside. InputError without pandas."""
         from verification.sweep.export import to_dataframe
 
         return to_dataframe(self.table())

@@ -43,11 +43,7 @@ def check(study: Study) -> None:
 
 
 def unusable_files(study: Study) -> dict[tuple[str, str], str]:
-    """Return why varied files are refused, by axis and path.
-
-    Each is read and sampled, beside the other axes' limits.
-    Raises the first one's InputError where all of them are refused.
-    """
+    """Return why varied files are refused, by axis and path. Raises the first InputError where all are."""
     refused: dict[tuple[str, str], InputError] = {}
     for axis, path in _files(study):
         others = {name: values for name, values in study.vary.items() if not name.endswith(".path")}
