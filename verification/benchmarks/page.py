@@ -23,10 +23,7 @@ Number = Callable[[Ratios, Rows], Spread | None]
 
 
 def over(code: str, by: str = OWN) -> Number:
-    """Return a code's ratio to this code, or to its solver alone, in seconds.
-
-    It is a range of rounds or, in older records, a ratio of medians.
-    """
+    """Return a code's seconds over this code's, or its solver's: a range of rounds or, if old, of medians."""
 
     def number(ratios: Ratios, rows: Rows) -> Spread | None:
         if by == OWN:
