@@ -83,7 +83,6 @@ def render(
 
 
 def _own(evidence: Evidence, picture: Any) -> dict[str, Any]:
-    """Return the sections of a report on this project's own code beside its cases."""
     claims = judged(evidence.cases, evidence.errata)
     numbers = agreement.numbers(by_claim(evidence.cases))
     return {

@@ -22,7 +22,6 @@ def _values(data: Data, name: str) -> np.ndarray[tuple[int, ...], np.dtype[np.fl
 
 
 def _table3(canvas: Canvas, data: Data) -> None:
-    """Draw ours over printed, mesh by mesh, with u."""
     axes = canvas.add_subplot()
     mesh, rms = _values(data, "mesh"), _values(data, "sigma_e (um)")
     ratio = _values(data, "ours") / _values(data, "printed")
@@ -40,7 +39,6 @@ def _table3(canvas: Canvas, data: Data) -> None:
 
 
 def _fig5_differences(data: Data) -> dict[str, list[float]]:
-    """Return the differences from the curves with which stresses nearly coincide."""
     return {
         f"{ours}{suffix} less {theirs} (MPa)": list(
             _values(data, f"{ours}{suffix} (MPa)") - _values(data, f"{theirs} (MPa)")
@@ -161,7 +159,6 @@ def _fig10(canvas: Canvas, data: Data) -> None:
 
 
 def _fig11_gaussians(data: Data) -> dict[str, list[float]]:
-    """Return the Gaussian densities of the same rms."""
     found = {}
     for panel in FIG11:
         x, density = _values(data, f"{panel}: value"), _values(data, f"{panel}: density")

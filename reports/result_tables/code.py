@@ -80,13 +80,11 @@ def costs(benchmarks: Mapping[str, Any]) -> str:
 
 
 def _machines(runs: Iterable[Mapping[str, Any]]) -> list[str]:
-    """Return the kinds of machine of all runs."""
     found = [run["provenance"]["machine"] for run in runs]
     return sorted({f"{machine['cores']} cores ({machine['processor']})" for machine in found})
 
 
 def _median(row: Mapping[str, Any] | None) -> float | None:
-    """Return the median of the seconds of a benchmark's row; None for a code that was not timed."""
     return None if row is None or "seconds" not in row else row["seconds"]["median"]
 
 
@@ -170,7 +168,6 @@ def studies(documents: Mapping[str, Any]) -> str:
 
 
 def _searches(documents: Mapping[str, Any]) -> Iterator[Row]:
-    """Yield the rows of searches for inputs that are answered wrongly."""
     found, states = documents["extremes"]["counts"], documents["extremes"]["states"]
     least = min(row["digits"] for row in states if row["verdict"] == "right")
     yield (

@@ -160,7 +160,6 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _read_scene(options: argparse.Namespace) -> Scene:
-    """Return the scene, after whatever can be refused before it is solved."""
     import refimpl
     from verification.cli.arrays import require_netcdf
 
@@ -177,7 +176,6 @@ def _read_scene(options: argparse.Namespace) -> Scene:
 
 
 def _explain(scene: Scene, options: argparse.Namespace, keywords: Mapping[str, Any]) -> int:
-    """Show what the scene requires, and what an accuracy will cost, without solving it."""
     from refimpl.driver.limits import Limits
     from refimpl.driver.options import Options
     from refimpl.driver.refined import forecast
@@ -238,7 +236,6 @@ def _with_budget(
 
 
 def _refuse_ignored(options: argparse.Namespace) -> None:
-    """Refuse an option that the others leave without a meaning, rather than ignore it."""
     if options.quantity is not None and options.accuracy is None:
         raise refusal("--quantity", options.quantity, "none without --accuracy, which it is about")
     for name in (*FILES, "budget", "strict") if options.explain else ():

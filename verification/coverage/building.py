@@ -101,7 +101,6 @@ def _solved(kind: str, seed: int) -> dict[str, Any]:
 
 
 def _records(path: Path) -> Iterator[dict[str, Any]]:
-    """Yield the lines of a file; one cut short by a kill is skipped."""
     if not path.exists():
         return
     for line in path.read_text(encoding="utf-8").splitlines():
@@ -122,10 +121,7 @@ def solved(path: Path) -> list[Solved]:
 
 
 def pack(scenes: Iterable[Solved], path: Path) -> None:
-    """Write scenes as the result file that is committed: features in columns, as short as errors allow.
-
-    Of more than three grids every second one is kept, and the reference.
-    """
+    """Write scenes as the committed file: features in columns, every second grid of more than three."""
     rows = []
     for one in scenes:
         kept = one.grids if len(one.grids) <= _KEPT else (*one.grids[one.seed % 2 : -1 : 2], one.grids[-1])
@@ -159,8 +155,7 @@ _DIGITS = {"numbers": 6, "first_contact": 5, "peak": 5, "faces": 5}
 
 
 def _plain(grid: GridFeatures) -> dict[str, Any]:
-    """Return the features as short plain values: shares of faces to 0.01, parts of error bars summed but for
-    waves'."""
+    """Return short plain values: shares of faces to 0.01, parts of error bars summed but for waves'."""
     record = asdict(grid)
     record["highest_areas"] = ()
     record["faces"] = [[k, round(n, 2)] for k, n in enumerate(grid.faces) if n >= 0.005]
@@ -183,7 +178,6 @@ def as_corrected(features: GridFeatures) -> GridFeatures:
 
 
 def _short(value: Any, digits: int) -> Any:
-    """Return the value with its numbers rounded to significant digits."""
     if isinstance(value, Mapping):
         return {name: _short(one, digits) for name, one in value.items()}
     if isinstance(value, list | tuple):

@@ -80,8 +80,7 @@ def surface(M: int, seed: int, rms: float, radius: float | None = None) -> Array
 
 
 def scenes() -> tuple[EnclosedScene, ...]:
-    """Return all but the near ties and the oblique one, which take a proven or a solved scene to start
-    from."""
+    """Return all but the near ties and the oblique one, which start from a proven or a solved scene."""
     return (
         EnclosedScene("smooth", "a smooth bump without friction", surface(9, 0, 0.0, 0.2), load=12.0),
         EnclosedScene("rough", "a rough bump on identical metal", surface(12, 1, 0.1e-6, 0.3),
@@ -116,8 +115,7 @@ def oblique_scene() -> EnclosedScene:
 
 
 def near_tie(base: EnclosedScene, name: str, element: tuple[int, int], rise: float) -> EnclosedScene:
-    """Return ``base`` with one element raised by about ``rise`` (m), so that it just does, or does not,
-    touch."""
+    """Return ``base`` with one element raised by about ``rise`` (m): it just does, or not, touch."""
     quantum = 2.0**-60
     heights = base.heights.copy()
     heights[element] += np.rint(rise / quantum) * quantum

@@ -123,8 +123,7 @@ def _is_lawful(G: Array, shear: Array, h: Array, target: float, inside: NDArray[
 
 
 def count(tau: float, scenes: int = SCENES) -> Count:
-    """Count the lawful states of seeded scenes at one tau, and whether the solvers' good states are among
-    them."""
+    """Count lawful states of seeded scenes at one tau, and whether good states are among them."""
     numbers, wrong = list[int](), 0
     statuses: dict[str, dict[str, int]] = {method: {} for method in SOLVERS}
     for seed in range(scenes):

@@ -22,9 +22,7 @@ UNCERTAINTY = 1e-13
 
 @dataclass(frozen=True)
 class PowerLaw:
-    """Indenter ``coefficient`` * r^``exponent`` (coefficient in m^(1-n)), ``load`` (N), reduced ``modulus``
-    E* (Pa).
-    """
+    """Indenter ``coefficient`` * r^``exponent`` (m^(1-n)), ``load`` (N), reduced ``modulus`` E* (Pa)."""
 
     load: float
     coefficient: float
@@ -63,13 +61,7 @@ class PowerLaw:
 
 @dataclass(frozen=True)
 class Cone:
-    """Rigid cone of surface ``slope`` (m/m), ``load`` (N), reduced ``modulus`` E* (Pa): Sneddon's own closed
-    forms.
-
-    >>> cone = Cone(load=1.0, slope=0.1, modulus=1e9)
-    >>> cone.mean_pressure == cone.modulus * cone.slope / 2
-    True
-    """
+    """Rigid cone of surface ``slope`` (m/m), ``load`` (N), ``modulus`` E* (Pa): Sneddon's closed forms."""
 
     load: float
     slope: float

@@ -20,8 +20,7 @@ class Loaded(NamedTuple):
 
 
 def hardness_factor(nu: float) -> float:
-    """Return the maximum pressure at first yield over the hardness, ``K = 0.454 + 0.41 nu`` (Kogut and
-    Etsion)."""
+    """Return peak pressure at first yield over hardness, ``0.454 + 0.41 nu`` (Kogut and Etsion)."""
     return 0.454 + 0.41 * nu
 
 

@@ -21,11 +21,7 @@ _ROW = re.compile(r"^\| `(\w+)\.json` \| `rough-friction verify ([^`]*)FILE` \|"
 
 
 def patterns(page: str) -> dict[str, list[str]]:
-    """Return the patterns of ids by result file, of the rows that select cases of the full tier.
-
-    >>> patterns("| `plane.json` | `rough-friction verify --tier full --only 'a/*' --json FILE` | cases |")
-    {'plane': ['a/*']}
-    """
+    """Return the patterns of ids by result file, of the rows that select cases of the full tier."""
     words = {name: shlex.split(options) for name, options in _ROW.findall(page)}
     return {
         name: [pattern for option, pattern in pairwise(row) if option == "--only"]

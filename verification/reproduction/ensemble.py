@@ -61,8 +61,7 @@ QUICK: Mapping[str, tuple[int, Mapping[str, Iterable[float]]]] = {
 
 @cache
 def rows_at(tier: str, name: str) -> tuple[Row, ...]:
-    """Return all rows of a shipped study, or in the quick tier those of its part on `QUICK_MESH` elements a
-    side."""
+    """Return all rows of a shipped study; in the quick tier those on `QUICK_MESH` elements a side."""
     if tier == "full":
         return rows(read_study(name))
     study, (realisations, vary) = read_study(name), QUICK[name]
@@ -71,11 +70,7 @@ def rows_at(tier: str, name: str) -> tuple[Row, ...]:
 
 
 def rows(study: Study) -> tuple[Row, ...]:
-    """Return all rows of a study, solved in this process.
-
-    Raises RuntimeError when a run failed or its certificate does not meet the tolerance: an ensemble with
-    gaps is no ensemble.
-    """
+    """Return all rows of a study, solved here. RuntimeError where one failed or is not certified."""
     with tempfile.TemporaryDirectory() as folder:
         done = sweep(study, Path(folder) / "rows.sqlite", workers=0)
     uncertified = [row["key"] for row in done.rows if row["status"] not in CERTIFIED]
@@ -86,10 +81,7 @@ def rows(study: Study) -> tuple[Row, ...]:
 
 
 def column(found: Iterable[Row], quantity: str, **where: float) -> list[float]:
-    """Return the values of a quantity in the rows whose coordinates equal those given, in order.
-
-    Raises LookupError when there are none.
-    """
+    """Return the values of a quantity in rows at given coordinates, in order; LookupError for none."""
     chosen = [row[quantity] for row in found if all(row[k] == v for k, v in where.items())]
     if not chosen:
         raise LookupError(f"no run has {where}")

@@ -98,8 +98,7 @@ def sought(scene: rf.Scene, M: int, **options: Any) -> str:
 def verdict(
     solution: rf.Solution, error: float, oracle: str, note: str = "", limit: float = WRONG_FROM, **data: float
 ) -> Judged:
-    """Return right or wrong where the status claims success, else a detected failure with its error, and the
-    share of the contact that carries no tau."""
+    """Return right or wrong of a claimed success, else a detected failure with its error; tau's share."""
     status = solution.status.value
     if solution.status in GOOD:
         return number(error, limit, status, oracle, note, **data)
@@ -149,7 +148,6 @@ def exact_error(scene: rf.Scene, solution: rf.Solution, **options: Any) -> tuple
 
 
 def _untouched(oracle: Oracle, solution: rf.Solution) -> tuple[float, str]:
-    """Judge no contact: right where the exact gap is nowhere below the approach."""
     if oracle.approach is None:
         return 1.0, "no contact under a load"
     overlap = oracle.approach - min(oracle.h)

@@ -101,8 +101,7 @@ class Oracle:
         self.doubles = {name: values.astype(float) for name, values in self.exact.items()}
 
     def solve(self, pressure: Array, support: Mask, tangents: tuple[Array, Array] | None = None) -> Exactly:
-        """Return the exact state that belongs to a returned pressure and to tau's active set, both ``(M,
-        M)``.
+        """Return the exact state of a returned pressure and of tau's active set, both ``(M, M)``.
 
         Slopes are sought from the returned ``tangents`` on, or from those that the pressure leaves on flats.
         """
@@ -173,8 +172,7 @@ class Oracle:
         return Guess(x, contact, units)
 
     def _residual(self, on: dict[str, Exact], state: Guess, support: Mask, terms: Terms) -> Exact:
-        """Return the residuals of Eqs (6) and (7), of the tangents, and of Eq. (2); a column for each of
-        ``state.x``."""
+        """Return residuals of Eqs (6), (7), the tangents and Eq. (2); a column for each ``state.x``."""
         n, (peak, length, room) = self.n, state.units
         x, inside = state.x, state.contact[:, None].astype(float)
         f, gap = x[:n] * inside, x[:n] * (1 - inside)
@@ -198,8 +196,7 @@ class Oracle:
         return np.concatenate([contact, *slopes, carried * (on["dA"][0] * peak / terms.load) - 1])
 
     def _step(self, state: Guess, support: Mask, terms: Terms, residual: Array) -> Array:
-        """Return Newton's step for a residual: the Jacobian by complex steps, its rows and columns in one
-        size."""
+        """Return Newton's step for a residual: the Jacobian by complex steps, rows and columns scaled."""
         size = len(state.x)
         shifted = state.x.astype(float) + 1j * TINY * np.eye(size)
         jacobian = self._residual(self.doubles, state._replace(x=shifted), support, terms).imag / TINY
@@ -212,8 +209,7 @@ class Oracle:
         return np.asarray(columns * step)
 
     def _moved(self, state: Guess, step: Exact, one: bool) -> tuple[Guess, bool]:
-        """Return the state after a step; elements of negative pressure or gap are exchanged, all or the last
-        one."""
+        """Return the state after a step; elements of negative pressure or gap change, all or the last."""
         x = state.x + step[:, None]
         y = x[: self.n, 0]
         bad = np.zeros(self.n, dtype=bool)

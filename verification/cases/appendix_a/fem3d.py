@@ -114,8 +114,7 @@ def ridge(slope: float, position: float = FLANK) -> Waviness:
 
 
 def odd_part(surface: Waviness, nu: float, level: int = 2) -> Array:
-    """Return half the difference (10,) between a slope and its opposite, over flat, without the boundary's
-    1/R^2."""
+    """Return half the difference (10,) between a slope and its opposite, over flat, less 1/R^2."""
     opposite = Waviness(-surface.slope_deg, surface.wavelength, surface.position, surface.kind)
     near, far = (
         0.5 * (sample(surface, nu, radius, level).down - sample(opposite, nu, radius, level).down)

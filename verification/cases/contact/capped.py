@@ -50,8 +50,7 @@ def peak_of(scene: rf.Scene, grid: int | tuple[int, int]) -> float:
 
 
 def apart(dense: rf.Solution, fft: rf.Solution) -> float:
-    """Return the largest difference of pressures over H, and of F and Q over the load; infinite on other
-    sets."""
+    """Return the largest difference of pressures over H, of F and Q over the load; infinite on other sets."""
     if not np.array_equal(dense.contact, fft.contact) or dense.plastic_area != fft.plastic_area:
         return float("inf")
     forces = (getattr(dense, name) - getattr(fft, name) for name in ("friction_force", "binormal_force"))

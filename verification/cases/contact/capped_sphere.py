@@ -25,8 +25,7 @@ NU, STEPS = 0.3, 24
 
 
 def sphere_scene(hardness: float, load: float = LOAD) -> rf.Scene:
-    """Return the frictionless sphere on a flat of that hardness (Pa), in 2.6 times the contact's largest
-    radius."""
+    """Return the frictionless sphere on a flat of that hardness (Pa), 2.6 largest radii a side."""
     sphere = replace(SPHERE, load=load)
     radius = max(sphere.contact_radius, plastic_limit(sphere, hardness)[0])
     flat = rf.Body(replace(MATERIAL, hardness=hardness), rf.Flat())

@@ -49,8 +49,7 @@ def paper_scheme() -> Measured:
 
 
 def embedded(before: int, after: int) -> tuple[rf.Solution, rf.Solution, Mask]:
-    """Return a square scene and the same heights in the midst of a longer domain; the square's elements in
-    it."""
+    """Return a square scene, the same heights amid a longer domain, and the square's elements in it."""
     M, side = 36, 1.61e-3
     scene = pressed(radius=0.05, rms=0.3e-6, load=10.0, direction=0.7)
     columns, square = M + before + after, slice(before, before + M)

@@ -59,8 +59,7 @@ LOADS = (0.02, 0.04, 0.08)
 
 
 def area_curves(M: int) -> Array:
-    """Return the perimeter-corrected contact fraction, shape ``(seeds, loads)``, of five self-affine
-    planes."""
+    """Return five self-affine planes' perimeter-corrected contact fractions ``(seeds, loads)``."""
     curves = []
     for seed in range(5):
         heights = 1e-3 * waves(M, seed, longest=4, shortest=16)

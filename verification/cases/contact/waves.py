@@ -1,6 +1,4 @@
-"""Periodic waviness from light to full contact: Westergaard, Johnson-Greenwood-Higginson, and a rough plane
-in full contact.
-"""
+"""Periodic waviness to full contact: Westergaard, Johnson-Greenwood-Higginson, and a rough plane."""
 
 from __future__ import annotations
 
@@ -30,8 +28,7 @@ def egg_box(x: Array, y: Array) -> Array:
 
 
 def press_ridge(share: float, M: int) -> tuple[Wave, rf.Solution, Array]:
-    """Return the exact wave at ``share`` of p*, the solver's answer, and the exact pressure ``(M, M)``
-    (Pa)."""
+    """Return the exact wave at ``share`` of p*, the answer, and the exact pressure ``(M, M)`` (Pa)."""
     star = Wave(1.0, AMPLITUDE, WAVELENGTH, MODULUS).full_contact_pressure
     wave = Wave(share * star, AMPLITUDE, WAVELENGTH, MODULUS)
     solution = press(ridge, WAVELENGTH, M, load=share * star * WAVELENGTH**2, periodic=True)

@@ -19,8 +19,7 @@ EXACT = Sphere(load=SCENE.load, radius=0.14, modulus=SCENE.materials.reduced_mod
 
 
 def _moved(position: int) -> rf.Scene:
-    """Return the scene with the ball below, slid by up to an element of 32 x 32; position 0 is the scene
-    itself."""
+    """Return the scene with the ball below, slid by up to an element of 32 x 32; 0 is the scene itself."""
     if position == 0:
         return SCENE
     direction, share = np.random.default_rng(position).uniform(0, 1, 2)

@@ -22,8 +22,7 @@ RETURNED = 4 * 8  # bytes per element: both deformed surfaces, gap and indentati
 
 @cache
 def scenes() -> dict[str, tuple[rf.Scene, bool | None]]:
-    """Return the scenes that require normal contact alone, and ``oblique`` where the scene does not say
-    so."""
+    """Return the scenes that require normal contact alone, and ``oblique`` unless the scene says so."""
     hertz, table1 = rf.read_scene("hertz"), rf.read_scene("table1-smooth")
     twins = replace(table1, lower=rf.Body(table1.upper.material, table1.lower.surface))
     incompressible = rf.Material(E=10e6, nu=0.5)
@@ -52,8 +51,7 @@ def bare(scene: rf.Scene) -> Counter:
 
 
 def peak(run: Callable[[], object]) -> float:
-    """Return the peak of Python's and numpy's memory (bytes per element) in a second run: kernels are
-    tabulated once."""
+    """Return the peak memory (bytes per element) of a second run: kernels are tabulated once."""
     run()
     tracemalloc.start()
     try:

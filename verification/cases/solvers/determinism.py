@@ -52,8 +52,7 @@ def in_a_process(method: Method, periodic: bool, *, transforms: int, blas: int) 
 
 
 def difference(one: dict[str, str], other: dict[str, str]) -> float:
-    """Return the largest relative difference of the pressures (to the peak) and of the numbers; 0 for equal
-    bits."""
+    """Return the largest relative difference of pressures (to the peak) and numbers; 0: equal bits."""
     if one == other:
         return 0.0
     first, second = (np.frombuffer(bytes.fromhex(answer["pressure"])) for answer in (one, other))

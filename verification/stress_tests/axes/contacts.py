@@ -33,8 +33,7 @@ BETAS = (1e-12, 1e-3, 0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 100.0, 1e3, 1e6)
 
 
 def plane(periodic: bool) -> rf.Scene:
-    """Return a steel flat on a polymer with noise of 0.2 um rms on one wave a side, pressed flat at about
-    1e-3 E*."""
+    """Return steel on a polymer with 0.2 um rms noise on one wave a side, pressed at about 1e-3 E*."""
     wave = np.cos(2 * np.pi * np.arange(M) / M)
     rough = 2e-7 * np.random.default_rng(7).standard_normal((M, M)) + 5e-7 * np.add.outer(wave, wave)
     return on(rough, periodic=periodic, friction=rf.Friction(0.0, 0.12))
@@ -106,8 +105,7 @@ def contact_sets() -> Iterator[Extreme]:
 
 
 def pair(upper: rf.Material, lower: rf.Material, beta: float = 0.3) -> rf.Scene:
-    """Return the ball on a rough flat, with high friction, at a mean pressure of 1e-4 of the pair's
-    modulus."""
+    """Return the ball on a rough flat, high friction, at a mean pressure of 1e-4 of the modulus."""
     scene = pressed(upper=upper, lower=lower, rms=0.5e-6, direction=0.7)
     load = 1e-4 * scene.materials.reduced_modulus * scene.lengths[0] ** 2
     tau = 1e-2 * load / scene.lengths[0] ** 2

@@ -51,8 +51,7 @@ def ridge(M: int, across: int) -> rf.Scene:
 
 
 def grids() -> Iterator[Extreme]:
-    """Yield tiny grids by the oracle, primes by the dense solver, large ones by Hertz, ridges of any
-    aspect."""
+    """Yield tiny grids by the oracle, primes by the dense solver, large by Hertz, ridges of any aspect."""
     scene = pressed(lower=POLYMER, load=30.0, direction=0.7)
     flat = replace(scene, upper=rf.Body(STEEL, rf.Flat()), periodic=True)
     scenes = {"half-space": scene, "periodic": flat}

@@ -36,8 +36,7 @@ def against_digits(kind: str, x: float, y: float, dx: float, dy: float) -> Judge
 
 
 def kernels() -> Iterator[Extreme]:
-    """Yield points along the axis, off it, near the zero of the odd kernel, in thin elements, in tiny and
-    vast units."""
+    """Yield points along the axis, off it, near the odd kernel's zero; thin elements; extreme units."""
     for kind in INTEGRALS:
         for x in OFFSETS:
             for direction, y in (("on the axis", 0.0), ("off the axis", 0.75)):

@@ -59,8 +59,7 @@ def wedge_at(gamma: float, r: float) -> Judged:
 
 
 def _limits(gamma: float, theta: float, r: float) -> Array:
-    """Return sigma_r, sigma_theta, tau in the limit: -1, -1, 0 at the tip; far away the radial field of the
-    resultant (Michell 1900)."""
+    """Return limits of sigma_r, sigma_theta, tau: -1, -1, 0 at the tip; radial far away (Michell 1900)."""
     if r < 1:
         return np.array([-1.0, -1.0, 0.0])
     with mp.workdps(40):  # doubles leave 8 digits of the opening of the narrowest wedge
@@ -103,8 +102,7 @@ def wedges() -> Iterator[Extreme]:
 
 
 def finite_elements() -> Iterator[Extreme]:
-    """Yield Poisson's ratio up to 1/2, which the mixed form alone takes; inner vertices moved, at nu = 0.3
-    and 0.4999."""
+    """Yield nu up to 1/2, by the mixed form alone; inner vertices moved, at nu = 0.3 and 0.4999."""
     for form in ("direct", "mixed"):
         for nu in FEM_RATIOS:
             if nu < 0.5 if form == "direct" else nu > 0:  # lambda, or 1 / lambda, does not exist elsewhere
