@@ -102,6 +102,10 @@ def test_what_is_said_of_other_numbers_is_of_the_study() -> None:
     (random,) = (case for case in committed("pulled")["cases"] if case["id"] == "accuracy/pulled-random")
     held = [100 * share for share in random["data"]["held"].values()]
     assert f"{min(held):.0f} to {max(held):.0f} % cover, on 300 scenes" in PAGE_OF_BARS
+    (finer,) = (case for case in committed("sensitivity")["cases"] if case["id"] == "sensitivity/finer-grids")
+    shares = zip(("mu", "A", "p_max", "Q"), finer["data"]["covered"].values(), strict=True)
+    said = ", ".join(f"{name} {100 * share:.0f} %" for name, share in shares)
+    assert f"On 40 scenes they cover: {said}." in PAGE_OF_BARS
 
 
 def test_the_gain_of_the_correction_is_that_of_the_study() -> None:
