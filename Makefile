@@ -18,12 +18,13 @@ report: $(READY)
 	$(BIN)/rough-friction report --results $(OUT)/results.json --output $(OUT)/report; \
 	exit $$status
 
-# The committed results of cases: the command of each file, as its row in reports/results/README.md states it. The
-# commands of the other files, which are no cases, stand there too.
+# The committed results of cases: one run of the full tier, divided by the rows of reports/results/README.md, and one
+# of the quick tier. The commands of the other files, which are no cases, stand there too.
 results: $(READY)
-	sed -n 's/^| `\([a-z_0-9]*\).json` | `\(rough-friction verify [^`]*\)FILE`.*/\2reports\/results\/\1.json/p' \
-		reports/results/README.md | PATH="$(CURDIR)/$(BIN):$$PATH" xargs -d '\n' -P 2 -I {} sh -c '{}'
-	$(BIN)/python -m verification.output.result_files reports/results/*.json
+	@mkdir -p $(OUT)
+	$(BIN)/rough-friction verify --tier full --jobs 2 --json $(OUT)/full.json
+	$(BIN)/python -m verification.framework.divided $(OUT)/full.json
+	$(BIN)/rough-friction verify --tier quick --jobs 2 --json reports/results/quick.json.gz
 	$(BIN)/python -m reports.results_page
 
 # Ruff and mypy beside the tests; the verdicts of both count.

@@ -1,4 +1,4 @@
-"""README's scene, its map of contact pressure and three numbers. Usage: first_result.py [GRID] [PICTURE]"""
+"""README's scene, its map of contact pressure and two numbers. Usage: first_result.py [GRID] [PICTURE]"""
 
 import sys
 
@@ -16,8 +16,8 @@ scene = rf.Scene(upper=rf.Body(steel, ball), lower=rf.Body(copper, flat),
                  friction=rf.Friction(tau=15e6, beta=0.08), load=70.0, side=1.8e-3)  # fmt: skip
 s = rf.solve(scene, grid=GRID)
 mu, bar = s.friction_coefficient_corrected, s.error("friction_coefficient_corrected")
-area, peak = s.contact_area * 1e6, s.max_pressure / 1e9
-print(f"mu = {mu:.4f} +- {bar:.4f}, A = {area:.3f} mm^2, p_max = {peak:.3f} GPa ({s.status.value})")
+area, area_bar = s.contact_area_corrected * 1e6, s.error("contact_area_corrected") * 1e6
+print(f"mu = {mu:.4f} +- {bar:.4f}, A = {area:.3f} +- {area_bar:.3f} mm^2 ({s.status.value})")
 
 figure, axes = plt.subplots(figsize=(5.2, 4.6), layout="constrained")
 image = axes.imshow(
@@ -25,6 +25,6 @@ image = axes.imshow(
 )
 figure.colorbar(image, label="contact pressure (GPa)")
 axes.set(xlabel="x, along the sliding (mm)", ylabel="y (mm)", xlim=(-0.7, 0.7), ylim=(-0.7, 0.7))
-cap = copper.hardness / 1e9
-axes.set_title(f"mu = {mu:.4f} ± {bar:.4f}, A = {area:.3f} mm²\npressures capped at {cap:g} GPa")
+numbers = f"mu = {mu:.4f} ± {bar:.4f}, A = {area:.3f} ± {area_bar:.3f} mm²"
+axes.set_title(f"{numbers}\npressures capped at {copper.hardness / 1e9:g} GPa")
 figure.savefig(PICTURE, dpi=100)

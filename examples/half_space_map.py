@@ -13,23 +13,23 @@ NU = float(sys.argv[1]) if len(sys.argv) > 1 else 0.3
 PICTURE = sys.argv[2] if len(sys.argv) > 2 else "half_space_map.png"
 STEEL, COPPER = Material(200e9, NU), Material(118e9, NU)
 PANELS = {"copper, flank": (None, 0.25), "copper, crest": (None, 0), "steel on copper": (STEEL, None)}
-SLOPES, WAVELENGTHS = np.linspace(0.5, 30, 60), np.geomspace(8, 256, 40)  # degrees, element half-widths
+SLOPES, WAVELENGTHS = np.linspace(0.5, 30, 60), np.geomspace(4, 128, 40)  # degrees, elements
 LEVELS, SHADES = (0.5, 1, 2, 5, 10), plt.get_cmap("cividis")(np.linspace(0, 1, 6))  # percent
 
 figure, panels = plt.subplots(3, 1, figsize=(5.2, 7.4), layout="constrained", sharex=True)
 for axes, (title, (upper, place)) in zip(panels, PANELS.items(), strict=True):
     error = [
         [100 * coefficient_error(s, COPPER, upper, wavelength=w, position=place) for s in np.radians(SLOPES)]
-        for w in WAVELENGTHS
+        for w in 2 * WAVELENGTHS  # half-widths of an element
     ]
     filled = axes.contourf(SLOPES, WAVELENGTHS, error, LEVELS, colors=SHADES, extend="both")
     axes.contour(SLOPES, WAVELENGTHS, error, [2], colors="white", linewidths=2)
     axes.set(title=title, yscale="log")
-    axes.set_yticks([8, 32, 128], ["8", "32", "128"])
+    axes.set_yticks([4, 16, 64], ["4", "16", "64"])
     axes.minorticks_off()
     at = [float(np.interp(10, SLOPES, row)) for row in error]
-    print(f"{title}, 10 degrees: {at[0]:.1f} % on waves of 8 half-widths, {at[-1]:.1f} on 256")
-panels[1].set_ylabel("wavelength (halves of an element)")
+    print(f"{title}, 10 degrees: {at[0]:.1f} % on waves of 4 elements, {at[-1]:.1f} on 128")
+panels[1].set_ylabel("wavelength (elements)")
 panels[2].set_xlabel("maximum slope (degrees)")
 figure.colorbar(filled, ax=panels, label=f"error of the coefficient (%), nu = {NU:g}", format="%g")
 figure.savefig(PICTURE, dpi=100)

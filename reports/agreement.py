@@ -152,8 +152,7 @@ HERTZ = {"contact radius a0": ("A", 0.5), "peak pressure": ("p_max", 1.0)}  # nu
 
 
 def _smooth(quantity: str, label: str, cases: Cases) -> tuple[float, float | None]:
-    """Return the relative effects of the inputs and of R = 0.143 m on a number of smooth bodies, or on a
-    slope."""
+    """Return relative effects of inputs and of R = 0.143 m on a number of smooth bodies, or a slope."""
     if quantity == "rms slope":
         return SLOPES[label], None
     if label not in HERTZ or INPUTS not in cases:
@@ -164,8 +163,7 @@ def _smooth(quantity: str, label: str, cases: Cases) -> tuple[float, float | Non
 
 
 def _effects(inputs: Mapping[str, Any], name: str, sigma: float) -> tuple[float, float | None]:
-    """Return the relative effects of the inputs and of R = 0.143 m in a roughness's column; none if not
-    recorded."""
+    """Return relative effects of inputs and of R = 0.143 m in a column; none if not recorded."""
     roughness = inputs.get("sigma_e (um)", ())
     columns = [k for k, s in enumerate(roughness) if math.isclose(s, sigma, abs_tol=1e-3)]
     if not columns:
@@ -249,8 +247,7 @@ def by_quantity(found: Iterable[Number]) -> dict[str, list[Number]]:
 
 
 def ratio_and_scatter(group: Sequence[Number]) -> tuple[float, float | None]:
-    """Return the geometric mean and geometric standard deviation of computed / printed; no deviation of one
-    number.
+    """Return the geometric mean and deviation of computed / printed; no deviation of one.
 
     >>> ratio_and_scatter([Number("", "", "", "", 1.0, value, 0.0, 0.0) for value in (2.0, 8.0)])
     (4.0, 2.665...)

@@ -20,8 +20,7 @@ GROUPS = ("self", "in line", "across")
 
 
 def _error_map(canvas: Canvas, data: Data) -> None:
-    """Draw the error over the slope: the element itself by place, and the next ones on a flank; dashed: the
-    pair."""
+    """Draw the error over the slope: the element itself by place, next ones on a flank; dashed: pair."""
     own, following = canvas.subplots(2, 1, sharex=True)
     lines = [(own, place, "self", place) for place in PLACES]
     lines += [(following, "flank", key, label) for key, label in NEXT.items()]
@@ -286,8 +285,6 @@ TIMED = ("paper", "production", "NNLS", "L-BFGS-B")
 
 
 def _table2_seconds(data: Data) -> Data:
-    """Return the seconds of each method over the grids of the paper's scheme; none where a method ends
-    earlier."""
     seconds = {name: dict(zip(data[f"{name}: M"], data[f"{name}: s"], strict=True)) for name in TIMED}
     grids = data["paper: M"]
     return {"M": grids, **{name: [by_grid.get(M) for M in grids] for name, by_grid in seconds.items()}}

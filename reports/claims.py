@@ -133,9 +133,7 @@ def _judged(
 def _verdict(
     claim: Claim, cases: Sequence[Case], by_name: Mapping[str, Case], groups: Mapping[str, Sequence[Number]]
 ) -> str:
-    """Return the least favourable of the claim's own verdict and those that its numbers, its comparisons and
-    its cases give; none without evidence that passed.
-    """
+    """Return the least favourable verdict of claim, numbers, comparisons, cases; none without a pass."""
     if claim.evidence and (not cases or worst(list(cases)) != "pass"):
         return NOT_ESTABLISHED
     if claim.verdict in UNJUDGED:
@@ -161,8 +159,7 @@ def ascending(text: str) -> str:
 
 
 def statements(claims: Iterable[Judged]) -> dict[str, list[Judged]]:
-    """Return the claims that each case is evidence of, by its id: the only verdicts on the paper that it
-    has."""
+    """Return the claims that each case is evidence of, by its id: the paper's only verdicts."""
     found: dict[str, list[Judged]] = {}
     for row in claims:
         for case in row.cases:
@@ -187,8 +184,7 @@ class Shown:
 
 
 def shown(claims: Sequence[Judged], numbers: Sequence[Number], cases: Sequence[Case]) -> list[Shown]:
-    """Return the parts that have a claim, a number or a figure; of a pattern the long
-    cases that passed stand for quick ones."""
+    """Return the parts with a claim, number or figure; long cases that passed stand for a pattern's quick."""
     known, found = longest(cases), []
     for part in parts():
         drawn = [

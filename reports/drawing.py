@@ -117,7 +117,6 @@ def words(canvas: Canvas, caption: str) -> str:
 
 
 def _plain(text: str) -> str:
-    """Return the text without the marks of mathematics."""
     return re.sub(r"[$\\{}]", "", text).strip()
 
 
@@ -182,8 +181,7 @@ def curves(
 
 
 def maps(fields: Mapping[str, str], *, side: str | None, unit: str, colours: str = "viridis") -> Draw:
-    """Return the maps (key to title) of arrays ``[i, j]`` along x and y, one colour bar each; zero is left
-    blank."""
+    """Return maps (key to title) of arrays ``[i, j]`` along x, y, one colour bar each; zero is blank."""
 
     def draw(canvas: Canvas, data: Data) -> None:
         panels = canvas.subplots(len(fields), 1, squeeze=False)[:, 0]
@@ -213,11 +211,7 @@ def _scale(axes: Axes, log: str) -> None:
 
 
 def _few_ticks(axes: Axes, x: np.ndarray[Any, np.dtype[np.float64]]) -> None:
-    """Set the ticks at the points of a logarithmic axis within two decades, where minor ones would be
-    labelled.
-
-    Those too close to the last one labelled have no tick.
-    """
+    """Set ticks at the points of a logarithmic axis within two decades; close ones have none."""
     if not 0 < x.max() < 100 * x.min():
         return
     kept = [x.min()]

@@ -111,11 +111,7 @@ def solver(results: Mapping[str, Any]) -> str | None:
 
 
 def rerun(command: str, case_id: str) -> str:
-    """Return the command that runs one case with the solver, its abilities and limits as in ``command``.
-
-    >>> rerun("rough-friction verify --solver a:b --only 'x/*' --able load --json y", "solver/pins")
-    'rough-friction verify --solver a:b --able load --only solver/pins'
-    """
+    """Return the command that runs one case with the solver, its abilities and limits as in ``command``."""
     words = iter(shlex.split(command)[1:])
     return shlex.join(["rough-friction", *_kept(words), "--only", case_id])
 
@@ -144,8 +140,7 @@ def revisions_of(evidence: Evidence) -> list[tuple[str, str, str]]:
 
 
 def newest(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
-    """Return the provenance of a study's document, or of its newest run; else the document, if it is
-    dated."""
+    """Return the provenance of a study's document or newest run; else the document, if it is dated."""
     listed = [entry for value in document.values() if isinstance(value, list) for entry in value]
     records = [
         item["provenance"]

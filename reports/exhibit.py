@@ -58,17 +58,7 @@ class Exhibit:
 
 
 def as_csv(figure: Figure, data: Data) -> str:
-    """Return all series of the data as CSV, the figure's own first: lists as columns, mappings as two
-    columns, arrays row by row; numbers to six digits.
-
-    >>> from reports.drawing import curves
-    >>> pair = curves("*", "", "h", {"error": "e"}, xlabel="", ylabel="")
-    >>> print(as_csv(pair, {"h": [1, 2], "error": [0.1, None]}))
-    h,error
-    1,0.1
-    2,
-    <BLANKLINE>
-    """
+    """Return all data as CSV, the figure's own first: lists and mappings as columns; six digits."""
     buffer = io.StringIO()
     write = csv.writer(buffer, lineterminator="\n").writerow
     names = dict.fromkeys((*figure.needs, *(name for name, v in data.items() if not isinstance(v, str))))
@@ -84,7 +74,6 @@ def as_csv(figure: Figure, data: Data) -> str:
 
 
 def _six(value: Any) -> Any:
-    """Return the six digits of a float, as many as a result is recorded with for figures."""
     return f"{value:.6g}" if isinstance(value, float) else value
 
 
@@ -98,7 +87,6 @@ def _is_column(values: object) -> bool:
 
 
 def _write_block(write: Callable[[Sequence[Any]], Any], name: str, values: Any) -> None:
-    """Write a mapping, an array of rows, or a single value below its name."""
     write([name])
     if isinstance(values, Mapping):
         for key, value in values.items():
@@ -120,8 +108,7 @@ class Album:
         self._sheet = StyleSheet()
 
     def add(self, figure: Figure, data: Data, title: str = "") -> Mapping[str, Any] | None:
-        """Return the figure for the page; None for one that is on the page already, or whose series are
-        missing.
+        """Return the figure for the page; None for one already there, or without its series.
 
         A figure that is shown has ``svg``, ``caption``, ``name``, and ``csv``: an address of all data of its
         case, or a link to the figure, ``table``, that has them. ``title`` is the case's.

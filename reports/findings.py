@@ -53,13 +53,7 @@ def note(case: Case) -> str:
     >>> note({"data": {}, "note": "1 (of 2; 3) by Eq. (1); more. And more"})
     '1 (of 2; 3) by Eq. (1)'
     """
-    return re.split(r"(?:;|(?<!Eq)(?<!Eqs)(?<!Fig)\.) (?![^(]*\))", plain_note(case))[0]
-
-
-def plain_note(case: Case) -> str:
-    """Return a case's note without the verdict with which older result files begin it."""
-    text: str = case["note"]
-    return text.removeprefix(f"{case['data'].get('verdict')}: ")
+    return re.split(r"(?:;|(?<!Eq)(?<!Eqs)(?<!Fig)\.) (?![^(]*\))", case["note"])[0]
 
 
 def fields(text: str) -> list[tuple[str, str]]:

@@ -113,8 +113,7 @@ EXPLAINED = ("rms slope", "ψ(0.5 µm), Eq. (12)")
 
 
 def _worst(numbers: Sequence[Number], count: int = 3) -> list[Number]:
-    """Return the worst of the quantities with a number beyond u, each by its largest ratio to the printed
-    number."""
+    """Return the worst of the quantities with a number beyond u, by its largest ratio to the print."""
 
     def distance(n: Number) -> float:
         return abs(math.log(n.ratio))
@@ -128,7 +127,6 @@ def _worst(numbers: Sequence[Number], count: int = 3) -> list[Number]:
 
 
 def _hertz(case: Case) -> str:
-    """Return the computed and exact number, and the relative error; empty for another case."""
     name = HERTZ.get(case["id"])
     if name is None or case["value"] is None or case["reference"] is None:
         return ""

@@ -16,7 +16,7 @@ from reports.drawing import Figure
 from reports.evidence import Evidence, gathered, groups, revisions_of
 from reports.evidence import rerun as rerun_with
 from reports.exhibit import Album
-from reports.findings import by_claim, plain_note
+from reports.findings import by_claim
 from reports.front_page import AGREEMENT, front_page
 from reports.results import Case, CaseDataError, compared, shaped, shown_status
 from reports.text import cell, decimals, interval, judgement, number, quoted, symbols
@@ -55,7 +55,7 @@ def render(
         lstrip_blocks=True,
     )
     environment.filters.update(number=number, anchor=anchor, symbols=symbols, quoted=quoted, label=label)
-    environment.filters.update(plain_note=plain_note, status=shown_status)
+    environment.filters.update(status=shown_status)
     template = environment.get_template("solver.html" if evidence.solver is not None else "report.html")
     with shaped("a study"):  # its file is checked by being shown
         own = {"statements": {}} if evidence.solver is not None else _own(evidence, one_picture)
@@ -83,7 +83,6 @@ def render(
 
 
 def _own(evidence: Evidence, picture: Any) -> dict[str, Any]:
-    """Return the sections of a report on this project's own code beside its cases."""
     claims = judged(evidence.cases, evidence.errata)
     numbers = agreement.numbers(by_claim(evidence.cases))
     return {

@@ -25,9 +25,7 @@ _STYLE = re.compile(r'style="([^"]*)"')
 
 
 def inline(svg: str, name: str, alt: str) -> str:
-    """Return the drawing as an ``<svg>`` element with a role, its alternative text, and ids that begin with
-    ``name``. Coordinates keep tenths of a point.
-    """
+    """Return an ``<svg>`` with role, alternative text, ids that begin with ``name``; tenths of a point."""
     size = _SIZE.search(svg)
     if size is None:
         raise ValueError("a drawing without a view box")
@@ -76,7 +74,6 @@ def _short(match: re.Match[str]) -> str:
 
 
 def _named(body: str, name: str) -> str:
-    """Put the figure's name before ids of definitions, and remove those of groups."""
     ids = {old: f"{name}-{k}" for k, old in enumerate(dict.fromkeys(_DEFINED.findall(body)))}
     used = {old for old in ids if f"#{old})" in body or f'"#{old}"' in body}
     for old in sorted(used, key=len, reverse=True):

@@ -22,12 +22,10 @@ def _values(data: Data, name: str) -> np.ndarray[tuple[int, ...], np.dtype[np.fl
 
 
 def _table3(canvas: Canvas, data: Data) -> None:
-    """Draw ours over printed, mesh by mesh, with u."""
     axes = canvas.add_subplot()
     mesh, rms = _values(data, "mesh"), _values(data, "sigma_e (um)")
     ratio = _values(data, "ours") / _values(data, "printed")
-    u = data.get("u 95 %") or np.sqrt(2) * _values(data, "half width 95 %")  # older files: no rounding
-    half = np.array(u, dtype=float) / _values(data, "printed")
+    half = _values(data, "u 95 %") / _values(data, "printed")
     for k, sigma in enumerate(np.unique(rms)):
         here = rms == sigma
         x = np.log2(mesh[here]) + 0.06 * (k - 1.5)
@@ -41,7 +39,6 @@ def _table3(canvas: Canvas, data: Data) -> None:
 
 
 def _fig5_differences(data: Data) -> dict[str, list[float]]:
-    """Return the differences from the curves with which stresses nearly coincide."""
     return {
         f"{ours}{suffix} less {theirs} (MPa)": list(
             _values(data, f"{ours}{suffix} (MPa)") - _values(data, f"{theirs} (MPa)")
@@ -162,7 +159,6 @@ def _fig10(canvas: Canvas, data: Data) -> None:
 
 
 def _fig11_gaussians(data: Data) -> dict[str, list[float]]:
-    """Return the Gaussian densities of the same rms."""
     found = {}
     for panel in FIG11:
         x, density = _values(data, f"{panel}: value"), _values(data, f"{panel}: density")
@@ -217,7 +213,7 @@ def _symbol(name: str) -> str:
 REPRODUCTION = (
     Figure(
         "reproduction/table3-[amp]*",
-        ("sigma_e (um)", "mesh", "printed", "ours", "half width 95 %"),
+        ("sigma_e (um)", "mesh", "printed", "ours", "u 95 %"),
         _table3,
         "{title}: this code over the printed value; bars are u (95 %), beyond which a difference counts.",
     ),

@@ -41,7 +41,6 @@ def _texts(value: object) -> bool:
 
 
 def _id(value: object) -> bool:
-    """Return True if the value is "subject/slug" without blanks."""
     return isinstance(value, str) and all(value.partition("/")) and len(value.split()) == 1
 
 
@@ -54,7 +53,6 @@ def _one_of(*values: str) -> Kind:
 
 
 def _command(value: object) -> bool:
-    """Return True if the value is a text that a shell would split into words."""
     try:
         return isinstance(value, str) and bool(shlex.split(value))
     except ValueError:  # an open quote
@@ -62,7 +60,6 @@ def _command(value: object) -> bool:
 
 
 def _labels(value: object) -> bool:
-    """Return True if the value is a table of texts, numbers and None."""
     return isinstance(value, Mapping) and all(
         item is None or _text(item) or _number(item) for item in value.values()
     )
@@ -118,10 +115,7 @@ def shaped(what: str, error: Callable[[str], ResultFileError] = ResultFileError)
 
 
 def check(results: object) -> Mapping[str, Any]:
-    """Return the results if they follow the schema, verdicts follow from numbers, and counts from cases.
-
-    Raises ResultFileError.
-    """
+    """Return results of the schema, of verdicts from numbers, counts from cases. Raises ResultFileError."""
     if not isinstance(results, Mapping) or results.get("format") != FORMAT:
         raise ResultFileError(f"not a file of the format {FORMAT!r}")
     _check_values(results, "the file")
@@ -175,8 +169,7 @@ def _check_verdict(case: Case) -> None:
 
 
 def _error_follows(case: Case) -> bool:
-    """Return True if the error is that of value, reference and metric, and the reference certain enough to
-    judge."""
+    """Return True if value, reference and metric give the error, with a certain reference."""
     value, reference, error, metric = (case[name] for name in ("value", "reference", "error", "metric"))
     if metric in ("at_most", "at_least"):
         return reference is None and bool(error == value) and (metric == "at_least" or value >= 0)
@@ -209,15 +202,13 @@ RECORDED = "recorded"
 
 
 def shown_status(case: Case) -> str:
-    """Return the status for people: a pass by a tolerance that was set from the result is "recorded", no
-    pass."""
+    """Return the status for people: a pass by a tolerance set from the result is "recorded"."""
     recorded = case["status"] == "pass" and case["tolerance_reason"].startswith(RECORDED)
     return RECORDED if recorded else str(case["status"])
 
 
 def worst(cases: list[Case]) -> str:
-    """Return the status that decides about several cases: any error or failure outweighs, then what did not
-    run."""
+    """Return the status that decides over cases: error or failure first, then what did not run."""
     present = {case["status"] for case in cases}
     return next(status for status in ("error", "fail", "unavailable", "pass") if status in present)
 

@@ -1,16 +1,8 @@
-"""Settings of all tests, and runs in a random order.
-
-``pytest --order-seed=3`` shuffles the files and the tests within each, and seeds every hypothesis search
-with 3, derandomised or not; ``--order-share=0.3`` takes each test with that probability, so that any subset
-is tried as well. pytest-randomly shuffles as well, but in every run where it is installed, and it leaves
-derandomised searches as they are.
-"""
+"""Settings of all tests."""
 
 from __future__ import annotations
 
 import importlib
-import random
-from collections import defaultdict
 from contextlib import suppress
 from pathlib import Path
 
@@ -30,41 +22,8 @@ ApproxScalar.DEFAULT_ABSOLUTE_TOLERANCE = 0.0
 PACKAGES = ("refimpl", "appendix_a", "verification", "reports")
 
 
-def pytest_addoption(parser: pytest.Parser) -> None:
-    group = parser.getgroup("random order")
-    group.addoption("--order-seed", type=int, help="shuffle tests, and seed hypothesis, with this number")
-    group.addoption("--order-share", type=float, default=1.0, help="take this share of the tests, at random")
-
-
 def pytest_configure(config: pytest.Config) -> None:
     config.pluginmanager.register(ImportedOnce(config.rootpath))
-
-
-@pytest.hookimpl(trylast=True)
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    seed = config.getoption("--order-seed")
-    if seed is None:
-        return
-    chance, files = random.Random(seed), defaultdict(list)
-    share = config.getoption("--order-share")
-    for item in items:
-        if chance.random() >= share:
-            continue
-        files[item.path].append(item)
-        test = getattr(item, "obj", None)
-        if test is not None and hypothesis.is_hypothesis_test(test):
-            hypothesis.seed(seed)(test)
-    shuffled = list(files.values())
-    chance.shuffle(shuffled)
-    for tests in shuffled:
-        chance.shuffle(tests)
-    items[:] = [item for tests in shuffled for item in tests]
-
-
-@pytest.fixture
-def order_seed(request: pytest.FixtureRequest) -> int | None:
-    """The run's ``--order-seed``, for searches that are not declared with ``given``."""
-    return request.config.getoption("--order-seed")
 
 
 class ImportedOnce:

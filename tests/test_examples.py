@@ -17,7 +17,7 @@ from verification.cases.appendix_a import half_space
 from verification.output import result_files
 
 EXAMPLES = {
-    "first_result": (["64"], "mu = 0.1195 +- 0.0024, A = 0.215 mm^2, p_max = 0.800 GPa (converged)"),
+    "first_result": (["64"], "mu = 0.1195 +- 0.0024, A = 0.185 +- 0.011 mm^2 (converged)"),
     "first_scene": (["64"], "mu = 0.124 +- 0.002, 2 patches (converged)"),
     "measured_map": (["100"], "mu = 0.120 +- 0.002, converged"),
     "fitted_friction": (["64"], "tau = 15.3 MPa (14.3 to 16.3)\nbeta = 0.078 (0.065 to 0.092)"),
@@ -46,9 +46,9 @@ EXAMPLES = {
     "small_slopes": (["32"], "a / R = 0.02: p_max +0.0 %\n...a / R = 0.33: p_max +6.3 %"),
     "half_space_map": (
         ["0.3"],
-        "copper, flank, 10 degrees: 4.8 % on waves of 8 half-widths, 5.2 on 256\n"
-        "copper, crest, 10 degrees: 1.3 % on waves of 8 half-widths, 0.1 on 256\n"
-        "steel on copper, 10 degrees: 1.6 % on waves of 8 half-widths, 1.7 on 256",
+        "copper, flank, 10 degrees: 4.8 % on waves of 4 elements, 5.2 on 128\n"
+        "copper, crest, 10 degrees: 1.3 % on waves of 4 elements, 0.1 on 128\n"
+        "steel on copper, 10 degrees: 1.6 % on waves of 4 elements, 1.7 on 128",
     ),
     "half_space_wave": (
         ["model_form"],

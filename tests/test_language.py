@@ -46,7 +46,6 @@ EXCEPTIONS: dict[tuple[str, str], str] = {
 
 KEPT = {
     "reports/studies/extremes.py": "named after the committed result that it shows",
-    "extreme_scene": "a state at an end of its axis",
     "Extreme": "a state at an end of its axis",
     "run_state(extreme)": "a state at an end of its axis",
     "summits": SUMMITS,

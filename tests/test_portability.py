@@ -3,104 +3,16 @@
 from __future__ import annotations
 
 import ast
-import json
-import os
-import subprocess
 import sys
 from collections.abc import Iterator
-from importlib.util import find_spec
-from pathlib import Path
 
-import numpy as np
 import pytest
 
 from refimpl import operating_system
 from tests.documents import ROOT
-from tests.refimpl.surfaces.measured import ROUGH, write_x3p
-from tests.verification.cli.commands import SCENE, STUDY, refused
+from tests.verification.cli.commands import refused
 
 PACKAGES = ("refimpl", "appendix_a", "verification", "reports", "examples")
-
-# Imported by every Python that the test starts, workers and readers among them. Two libraries that ask other
-# systems in other ways keep what they read on Linux.
-HIDE = """
-import builtins, io, os, signal, sys
-import psutil
-
-for name in ("fcntl", "resource", "pwd", "grp", "termios"):
-    sys.modules[name] = None
-for name in ("fork", "getuid", "geteuid", "nice", "setsid", "killpg", "getpgid", "sched_getaffinity"):
-    delattr(os, name)
-del os.O_NONBLOCK, os.waitid
-for name in ("SIGHUP", "SIGPROF", "SIGXCPU", "setitimer", "pthread_kill", "pthread_sigmask"):
-    delattr(signal, name)
-
-def hiding(call):
-    def hidden(path, *args, **keywords):
-        asks = sys._getframe(1).f_globals.get("__name__", "")
-        if str(path).startswith(("/proc", "/sys")) and not asks.startswith(("psutil", "threadpoolctl")):
-            raise FileNotFoundError(2, "hidden", str(path))
-        return call(path, *args, **keywords)
-    return hidden
-
-builtins.open = io.open = hiding(io.open)
-for name in ("open", "listdir", "readlink"):
-    setattr(os, name, hiding(getattr(os, name)))
-"""
-WAVE = "--slope-deg 0.5 --wavelength 50 --position 0.25 --nu 0.3 --offsets=-3,3 --json -"
-JOBS = {
-    "solve scene.toml --grid 16 --plot s.png --patches s.csv --npz s.npz --vtk s.vtu --json s.json": 0,
-    "inspect a.x3p --unit m --pixel-size 1e-6 --json i.json": 0,
-    "identify scene.toml data.csv --grid 16 --json f.json": 0,
-    "verify --only hertz/peak-pressure --jobs 1 --json results.json": 0,
-    "report --results results.json --committed committed --output report": 0,
-    "verify --solver verification.solver_suite.own:solve --only solver/one-element": 0,
-    "verify --exec '{python} silent.py' --only solver/one-element": 1,
-    "sweep study.toml --workers 1 --csv t.csv": 0,
-    "tradeoff scene.toml --grids 8,16 --reference 32": 0,
-    f"appendix-a strip {WAVE}": 0,
-    f"appendix-a fem {WAVE}": 0,
-    "appendix-a wedge --r 1 --gamma-deg 10 --theta-deg 0": 0,
-}
-RUN = """
-import json, os, shlex, sys, time
-from pathlib import Path
-
-from verification.cli import main
-
-if __name__ == "__main__":
-    assert not hasattr(os, "fork") and not Path("/proc/meminfo").is_dir()
-    found = {}
-    for command in json.loads(Path("jobs.json").read_text(encoding="utf-8")):
-        before = time.process_time()
-        try:
-            found[command] = main(shlex.split(command.replace("{python}", Path(sys.executable).as_posix())))
-        except SystemExit as usage:
-            found[command] = usage.code
-        print(f"{time.process_time() - before:5.1f} s  {command}", file=sys.stderr)
-    Path("found.json").write_text(json.dumps(found), encoding="utf-8")
-"""
-
-
-@pytest.mark.nightly
-def test_every_subcommand_runs_without_what_only_posix_has(tmp_path: Path) -> None:
-    rows = "load,mu,u_mu\n5,0.41,0.01\n9,0.33,0.01\n24,0.27,0.01\n"
-    files = {"sitecustomize.py": HIDE, "run.py": RUN, "jobs.json": json.dumps(list(JOBS)), "data.csv": rows}
-    files |= {"scene.toml": SCENE, "study.toml": STUDY, "silent.py": "print('none')"}
-    for name, text in files.items():
-        (tmp_path / name).write_text(text, encoding="utf-8")
-    (tmp_path / "committed").mkdir()
-    if find_spec("SurfaceTopography"):
-        write_x3p(tmp_path / "a.x3p", ROUGH)
-    else:  # not built for every system
-        np.savetxt(tmp_path / "a.x3p", ROUGH)
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join((str(tmp_path), str(ROOT)))}
-    done = subprocess.run(
-        [sys.executable, "run.py"], cwd=tmp_path, env=environment, capture_output=True, encoding="utf-8"
-    )
-    assert done.returncode == 0, done.stderr
-    assert json.loads((tmp_path / "found.json").read_text(encoding="utf-8")) == JOBS, done.stderr
-    assert "Traceback" not in done.stderr
 
 
 def unstated_encodings(source: str) -> Iterator[int]:

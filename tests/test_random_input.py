@@ -75,13 +75,13 @@ def check(content: bytes | None, name: str, arguments: list[str]) -> None:
         assert out.getvalue() == ""
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(st.sampled_from(sorted(SCENES)).flatmap(lambda name: damaged(SCENES[name])))
 def test_scene_files(content: bytes) -> None:
     check(content, "scene.toml", ["solve", "scene.toml", "--grid", "8"])
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(st.lists(st.tuples(st.sampled_from(OPTIONS), st.sampled_from(WORDS)), max_size=3))
 def test_options(options: list[tuple[str, str]]) -> None:
     check(None, "", ["solve", "hertz", "--grid", "8", *(word for pair in options for word in pair)])

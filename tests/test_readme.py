@@ -9,6 +9,7 @@ from statistics import median
 from typing import Any
 
 from tests.documents import ROOT, blocks, commands, run
+from verification.coverage.class_scenes import GRIDS
 from verification.output.result_files import committed
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -61,14 +62,14 @@ def test_what_it_names_is_there() -> None:
 
 
 def stated_by_class(head: str) -> dict[str, list[str]]:
-    """The cells of a table on the page of error bars, by class."""
+    """The covered share and the bar over the error of a table on the page of error bars, by class."""
     lines = PAGE_OF_BARS.splitlines()
     start = next(k for k, line in enumerate(lines) if line.startswith(head)) + 2
     rows = (
         [cell.strip() for cell in line.strip("|").split("|")]
         for line in lines[start : lines.index("", start)]
     )
-    return {name: cells for name, *cells in rows}
+    return {name: [covered, ratio] for name, covered, ratio, _ in rows}
 
 
 def test_the_classes_covered_least_are_those_of_the_study() -> None:
@@ -97,10 +98,14 @@ def test_what_is_said_of_other_numbers_is_of_the_study() -> None:
     failing = {row["class"]: row["held"] for row in table if row["class"] and row["number"] == "approach"}
     low = sorted((100 * held, kind) for kind, held in failing.items() if held < 0.9)
     said = [f"{kind} ({share:.0f} %{' cover' * (k == 0)})" for k, (share, kind) in enumerate(low)]
-    assert f"bars fail on {' and '.join(said)}" in PAGE_OF_BARS
+    assert f"bars are too short on {' and '.join(said)}" in PAGE_OF_BARS
     (random,) = (case for case in committed("pulled")["cases"] if case["id"] == "accuracy/pulled-random")
     held = [100 * share for share in random["data"]["held"].values()]
     assert f"{min(held):.0f} to {max(held):.0f} % cover, on 300 scenes" in PAGE_OF_BARS
+    (finer,) = (case for case in committed("sensitivity")["cases"] if case["id"] == "sensitivity/finer-grids")
+    shares = zip(("mu", "A", "p_max", "Q"), finer["data"]["covered"].values(), strict=True)
+    said = ", ".join(f"{name} {100 * share:.0f} %" for name, share in shares)
+    assert f"On 40 scenes they cover: {said}." in PAGE_OF_BARS
 
 
 def test_the_gain_of_the_correction_is_that_of_the_study() -> None:
@@ -122,8 +127,12 @@ def test_the_gain_of_the_correction_is_that_of_the_study() -> None:
     least, most = (pick(row["held"] for row in rows) for pick in (min, max))
     text = " ".join(README.split())
     assert (
-        f"in {100 * total['held']:.0f} % of {total['scenes']} random scenes; "
-        f"by class of scene in {100 * least:.0f} to {100 * most:.0f} %; "
-        f"{100 * total['held_at_worst']:.0f} % at worst, if each reference errs by its own bound"
+        f"in {100 * total['held']:.0f} % of {total['scenes']} random scenes "
+        f"on {min(GRIDS)} to {max(GRIDS)} elements per side; "
+        f"by class of scene in {100 * least:.0f} to {100 * most:.0f} %"
     ) in text
+    judged = f"The bars of {min(GRIDS)} to {max(GRIDS)} elements per side are judged"
+    at_worst = f"if each reference errs by its own bound, {100 * total['held_at_worst']:.0f} % cover"
+    assert judged in page
+    assert at_worst in page
     assert f"{total['median_bar_over_error']:.1f} times the actual error, in the median" in text

@@ -18,7 +18,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import refimpl as rf
-from appendix_a.fem.coefficient_map import CoefficientMap
+from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.model.problem import Terms
 from refimpl.planning.plan import Plan, make_plan
 from refimpl.scene.discretise import discretise
@@ -28,13 +28,12 @@ from refimpl.surfaces import surface_from_dict
 from refimpl.surfaces.from_table import KINDS
 from reports.results import check
 from tests.generated import instances, plain
-from verification.coverage.store import GridSolve, grid_solves, refine
+from verification.coverage.building import features_of
 from verification.framework.case import Case, Measured, Metric, Result, Tier
 from verification.framework.runner import Run as CasesRun
 from verification.sweep.export import header, to_csv
 from verification.sweep.run import COORDINATES, OUTCOMES, Run
 from verification.sweep.store import open_store
-from verification.sweep.study import Study
 from verification.sweep.study_file import study_from_dict
 
 LENGTHS = st.floats(1e-6, 1e-3)
@@ -117,13 +116,9 @@ def test_a_surface_given_by_its_gradient_comes_back_by_its_gradient() -> None:
 
 
 @FEW
-@given(st.lists(instances(GridSolve, KNOWN), min_size=1, max_size=3, unique_by=lambda one: (one.seed, one.M)))
-def test_solves_of_a_store(tmp_path_factory: pytest.TempPathFactory, made: list[GridSolve]) -> None:
-    store = tmp_path_factory.mktemp("solves") / "store.jsonl"
-    solved = {(one.seed, one.M): one for one in made}
-    for one in made:
-        refine(store, [one.seed], [one.M], lambda seed, M: solved[seed, M])
-    assert [plain(one) for one in grid_solves(store)] == [plain(one) for one in made]
+@given(instances(GridFeatures, KNOWN))
+def test_features_of_a_grid(made: GridFeatures) -> None:
+    assert plain(features_of(json.loads(json.dumps(asdict(made))))) == plain(made)
 
 
 def test_rows_of_a_sweep(tmp_path: Path) -> None:
@@ -149,41 +144,18 @@ def test_a_study_has_all_that_its_table_states() -> None:
     vary |= {"tau": [5e6], "beta": [0.07], "lower.surface[0].lay": [0.4]}
     table = {"scene": "table1-rough", "realisations": 3, "first_seed": 7, "normalise": True, "vary": vary}
     study = study_from_dict(table | {"solve": {"method": "dense", "oblique": False, "tolerance": 1e-6}})
-    scene = rf.read_scene("table1-rough")
-    expected = {
-        "scene": scene_to_dict(scene),
-        "realisations": 3,
-        "first_seed": 7,
-        "normalise": True,
-        "vary": {name: tuple(values) for name, values in vary.items()},
-        "settings": {"method": "dense", "oblique": False, "tolerance": 1e-6},
-        "files": (Path("table1-rough"),),
-        "notes": (),
-        "unusable": {},
-    }
-    assert set(expected) == {field.name for field in fields(Study)}
-    assert {name: getattr(study, name) for name in expected} == expected
     run = list(study.runs())[-1]  # of the third realisation
-    assert dict(run.coordinates) == {
-        "realisation": 2,
-        "grid": 16,
-        "load": 4.0,
-        "upper_rms": 1e-7,
-        "lower_rms": 2e-7,
-        "correlation_length": 2e-4,
-        "sliding_direction": 0.3,
-        "sliding_offset": 1e-5,
-        "tau": 5e6,
-        "beta": 0.07,
-        "parameters": '{"lower.surface[0].lay": 0.4}',
-    }
+    assert run.coordinates["realisation"] == 2
+    assert run.coordinates["parameters"] == '{"lower.surface[0].lay": 0.4}'
+    single = {name: values[-1] for name, values in vary.items() if name in run.coordinates}
+    assert {name: run.coordinates[name] for name in single} == single
     solved = scene_from_dict(run.inputs["scene"], Path())
     assert (solved.load, solved.sliding_direction, solved.sliding_offset) == (4.0, 0.3, 1e-5)
     assert solved.friction == rf.Friction(tau=5e6, beta=0.07)
     upper, lower = solved.upper.surface.parts[-1], solved.lower.surface.parts[0]
     assert upper == rf.GaussianRoughness(1e-7, 2e-4, seed=11, normalise=True)
     assert lower == rf.GaussianRoughness(2e-7, 2e-4, seed=12, normalise=True, lay=0.4)
-    assert run.inputs["solve"] == expected["settings"]
+    assert run.inputs["solve"] == {"method": "dense", "oblique": False, "tolerance": 1e-6}
 
 
 def test_a_case_keeps_its_numbers_to_the_report() -> None:
@@ -196,25 +168,22 @@ def test_a_case_keeps_its_numbers_to_the_report() -> None:
     result = case.run()
     document = json.loads(json.dumps(CasesRun(Tier.FULL, ("*",), (result,), 3.25).document()))
     (found,) = check(document)["cases"]
-    expected = {
-        "id": "subject/slug",
-        "title": "Title",
-        "claim": "Claim",
-        "source": "Source",
-        "metric": "relative",
+    numbers = {
         "value": 2.5,
         "reference": 2.0,
         "reference_uncertainty": 0.125,
         "error": 0.25,
         "tolerance": 0.5,
-        "tolerance_reason": "Reason",
-        "status": "pass",
-        "seconds": result.seconds,
-        "unit": "N",
-        "note": "a note",
-        "tier": "full",
-        "data": {"h": [1.0, None]},
     }
+    texts = {
+        "id": "subject/slug",
+        "title": "Title",
+        "claim": "Claim",
+        "source": "Source",
+        "metric": "relative",
+    }
+    texts |= {"tolerance_reason": "Reason", "status": "pass", "unit": "N", "note": "a note", "tier": "full"}
+    expected = {**numbers, **texts, "seconds": result.seconds, "data": {"h": [1.0, None]}}
     assert set(expected) == {field.name for field in fields(Result)}
     assert found == expected
     assert (document["tier"], document["only"], document["seconds"]) == ("full", ["*"], 3.25)
@@ -282,31 +251,10 @@ def test_flat_slopes_are_flat_in_a_pickle() -> None:
     assert repr(again.details.bounds) == repr(solution.details.bounds)
 
 
-@pytest.mark.parametrize("name", [*QUANTITIES, "pressure", "status", "uncertainty"])
-def test_no_solution_is_forged(name: str) -> None:
+def test_no_solution_is_forged() -> None:
     solution = rf.solve(rf.read_scene("hertz"), 8)
-    with pytest.raises(TypeError, match="unexpected keyword"):
-        replace(solution, **{name: getattr(solution, name)})
-    with pytest.raises(AttributeError):
-        setattr(solution, name, getattr(solution, name))
-
-
-def test_the_map_of_coefficients(tmp_path: Path) -> None:
-    """Five decimals of every number, along each axis."""
-    shape = (5, 4, 3, 6)
-    numbers = (np.arange(360).reshape(shape) + 1) * 1.1234567
-    table = CoefficientMap(
-        slope_deg=(1.0, 2.5, 4.0, 9.0, 15.0),
-        wavelength=(4.0, 8.0, 20.0, 70.0),
-        position=(0.0, 0.25, 0.5),
-        offset=(-3.0, -1.0, 0.5, 2.0, 4.0, 7.0),
-        kappa_part=np.round(numbers, 5),
-        constant_part=np.round(-numbers / 3, 5),
-        error_percentage_points=np.round(numbers[..., 0] / 7, 5),
-    )
-    table.write(tmp_path / "map.json")
-    again = CoefficientMap.read(tmp_path / "map.json")
-    for field in fields(CoefficientMap):
-        assert np.array_equal(getattr(again, field.name), getattr(table, field.name)), field.name
-    stated = json.loads((tmp_path / "map.json").read_text())["stated_error_percentage_points"]
-    assert stated == pytest.approx(355 * 1.1234567 / 7)  # the largest
+    for name in (*QUANTITIES, "pressure", "status", "uncertainty"):
+        with pytest.raises(TypeError, match="unexpected keyword"):
+            replace(solution, **{name: getattr(solution, name)})
+        with pytest.raises(AttributeError):
+            setattr(solution, name, getattr(solution, name))

@@ -21,7 +21,7 @@ Pixel = tuple[float, float]
 SLOPES = 1e-4, 10.0  # rms slopes of machined, polished and worn surfaces lie between; um for m is 1e6
 ISOTROPIC = 1.1  # ratio of correlation lengths up to which a map counts as isotropic, or by chance:
 BY_CHANCE = 3.0  # times the correlation length over the root of the area: two of the ratio's deviations
-CLASSES = 10_000  # classes of the material ratio curve (bearing curve)
+CLASSES = 10_000  # classes of height of the material ratio curve (bearing curve)
 CORE = 0.4  # material ratio of the core's secant
 DIRECTIONS = 180  # directions of the half-circle in which the autocorrelation is followed
 

@@ -38,7 +38,7 @@ def coverage(documents: Mapping[str, Any]) -> str:
     ]
     text = (
         "Error bars of 95 % on single grids of 48 to 128 elements against 384, on random scenes drawn after "
-        "the constants were fitted (p_max: before its bars became unbounded beside walls). *At worst*: the "
+        "the constants were fitted. *At worst*: the "
         "reference is off by its own bound, against the error bar. *Usable*: the bar is at most half "
         "of the number. *Error bar over error* is a median."
     )
@@ -80,13 +80,11 @@ def costs(benchmarks: Mapping[str, Any]) -> str:
 
 
 def _machines(runs: Iterable[Mapping[str, Any]]) -> list[str]:
-    """Return the kinds of machine of all runs."""
     found = [run["provenance"]["machine"] for run in runs]
     return sorted({f"{machine['cores']} cores ({machine['processor']})" for machine in found})
 
 
 def _median(row: Mapping[str, Any] | None) -> float | None:
-    """Return the median of the seconds of a benchmark's row; None for a code that was not timed."""
     return None if row is None or "seconds" not in row else row["seconds"]["median"]
 
 
@@ -170,12 +168,12 @@ def studies(documents: Mapping[str, Any]) -> str:
 
 
 def _searches(documents: Mapping[str, Any]) -> Iterator[Row]:
-    """Yield the rows of searches for inputs that are answered wrongly."""
-    found = documents["extremes"]["counts"]
+    found, states = documents["extremes"]["counts"], documents["extremes"]["states"]
+    least = min(row["digits"] for row in states if row["verdict"] == "right")
     yield (
         "extreme inputs",
-        f"{found['right']} right, {found['detected failure']} detected failures, "
-        f"{found['wrong']} wrong, {found['crash']} crashes",
+        f"{found['right']} right (to {least:.1f} digits at least), {found['detected failure']} detected "
+        f"failures, {found['unjudged']} unjudged, {found['wrong']} wrong, {found['crash']} crashes",
         link("extremes"),
     )
     invariants = documents["hypothesis"]

@@ -11,10 +11,7 @@ from reports.results import shaped
 
 
 def exhibit(name: str, document: Mapping[str, Any]) -> Exhibit:
-    """Return the study's exhibit, by the module of its name.
-
-    Raises ResultFileError where the file lacks what the module needs.
-    """
+    """Return the exhibit of the study's module. ResultFileError where the file lacks what it needs."""
     build = importlib.import_module(f"{__name__}.{name}").build
     with shaped(f"the study {name}"):
         built: Exhibit = build(document)

@@ -40,8 +40,7 @@ def build(document: Document) -> Exhibit:
 
 
 def newest_rows(runs: Sequence[Row]) -> dict[tuple[str, int], list[Row]]:
-    """Return each code's newest row by surface and grid, with ratios, commit and conditions of its own
-    run."""
+    """Return each code's newest row by surface and grid, with its run's ratios and conditions."""
     found: dict[tuple[str, int], dict[str, Row]] = {}
     for run in runs:
         ratios = {(entry["kind"], entry["M"]): entry for entry in run["ratios"]}
@@ -62,7 +61,6 @@ def _table(kind: str, newest: Mapping[tuple[str, int], Sequence[Row]]) -> Table:
 
 
 def _measured(column: Callable[[Row], Cell]) -> Callable[[Row], Cell]:
-    """Return the column, and None for a code that was not timed."""
     return lambda row: column(row) if "seconds" in row else None
 
 

@@ -9,8 +9,7 @@ from reports.exhibit import Column, Document, Exhibit, table
 
 CAPTION = (
     "Error bars of single grids of 48 to 128 elements against 384, on random scenes drawn after the "
-    "constants were fitted and looked at once; at worst, the reference is off by all of its own bound. The "
-    "bars of p_max are those before they became unbounded beside walls. "
+    "constants were fitted and looked at once; at worst, the reference is off by all of its own bound. "
     "Usable bars are at most half of the number; one that is unbounded always covers. The length is a median."
 )
 COLUMNS: dict[str, Column] = {

@@ -68,8 +68,7 @@ def _verdict(row: Row, metric: str) -> str:
 
 
 def _share(row: Row, metric: str) -> float | None:
-    """Return the error over tolerance; for a figure of merit the other way round. None where nothing was
-    measured."""
+    """Return error over tolerance; of a figure of merit inverted. None where nothing was measured."""
     error, tolerance = row["error"], row["tolerance"]
     if error is None:
         return None

@@ -94,8 +94,6 @@ def _data(one: dict[str, Any]) -> Data:
 
 
 def _figure(one: dict[str, Any]) -> Figure:
-    """Return the measured and predicted numbers over the measured one."""
-
     def draw(canvas: Canvas, data: Data) -> None:
         axes, places = canvas.add_subplot(), np.arange(len(data["at"]))
         scale = np.array(data["measured"], dtype=float)

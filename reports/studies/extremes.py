@@ -7,24 +7,24 @@ from typing import Any
 
 from reports.exhibit import Column, Document, Exhibit, Table, table
 
-VERDICTS = {"right": "right", "detected failure": "detected failure", "wrong": "wrong", "crash": "crash"}
-"""Recorded verdicts, and their names here."""
+VERDICTS = ("right", "detected failure", "unjudged", "wrong", "crash")
 
 BY_SERIES: dict[str, Column] = {
     "axis": "axis",
     "series": "series",
     "from": "from",
     "to": "to",
-    **{name: verdict for verdict, name in VERDICTS.items()},
+    **{verdict: verdict for verdict in VERDICTS},
     "fewest digits kept": "fewest digits",
     "median": "median digits",
     "judged by": "oracle",
 }
 LIMITS: dict[str, Column] = {
-    "kind": lambda row: row.get("kind"),  # older result files have none
+    "kind": "kind",
     "what happens": "what",
     "why": "why",
-    "states": "states",
+    "evidence": "evidence",
+    "states": lambda row: row["rule"] or ", ".join(row["states"]),
 }
 LAWFUL: dict[str, Column] = {
     "tau / mean pressure": "tau",
@@ -46,13 +46,14 @@ def sentence(document: Document) -> str:
     """Return verdicts, results of few digits, and judges that are this code, for the first page."""
     rows, counts = document["states"], document["counts"]
     right = [row for row in rows if row["verdict"] == "right"]
-    few = [row for row in right if row["digits"] < FEW]
+    digits = [row["digits"] for row in right]
+    few = sum(kept < FEW for kept in digits)
     again = sum(row["oracle"] in SECOND_SOLVE for row in right)
     return (
         f"{len(rows)} extreme inputs: {counts['wrong']} wrong beyond the conditioning of the input, "
         f"{counts['crash']} crashes, {counts['detected failure']} failed and reported it, "
-        f"{len(right)} right"
-        f"{f', {len(few)} of them to fewer than {FEW} digits' if few else ''}; "
+        f"{counts['unjudged']} not judged, {len(right)} right"
+        f"{f', {few} of them to fewer than {FEW} digits, the least {min(digits):.1f}' if few else ''}; "
         f"{again} of the right ones are judged by a second solve of this code"
     )
 
@@ -60,7 +61,7 @@ def sentence(document: Document) -> str:
 def build(document: Document) -> Exhibit:
     """Return the tables of the study."""
     rows, counts = document["states"], document["counts"]
-    found = ", ".join(f"{counts[verdict]} {name}" for verdict, name in VERDICTS.items())
+    found = ", ".join(f"{counts[verdict]} {verdict}" for verdict in VERDICTS)
     conditioning = document["conditioning"]
     return Exhibit(
         "Every axis to the point of failure",
@@ -69,7 +70,8 @@ def build(document: Document) -> Exhibit:
             "discrete problem in 34 digits, a closed form, or a second solve of this code (other units, no "
             "offset, the dense solver). A limit is what the input leaves: heights with a large offset have "
             "lost their digits, and finite elements have the digits of their mesh. Detected failure: "
-            "refused, or a status that says so. Crash: an exception without a reason, or no end in the time "
+            "refused, or a status that says so. Unjudged: no judge decides, as it fails itself, or as the "
+            "heights have lost their digits. Crash: an exception without a reason, or no end in the time "
             "allowed.",
             "Unit scaling by powers of two must change no bit, by powers of ten no more than 1e-12.",
             "For any beta a + beta c is positive definite (the proof is in the code), so at fixed slopes and "
@@ -79,7 +81,9 @@ def build(document: Document) -> Exhibit:
             _by_axis(rows),
             table("Every series, its range, and its verdicts.", document["table"], BY_SERIES),
             table(
-                "Limits found: where this implementation stops being a reference.", document["limits"], LIMITS
+                "Limits found: where this implementation stops being a reference, and what shows it.",
+                document["limits"],
+                LIMITS,
             ),
             table(
                 "Lawful states of 40 rough flats on 3 x 3 elements, counted by trying all contact sets.",
@@ -107,5 +111,5 @@ def _by_axis(rows: Sequence[dict[str, Any]]) -> Table:
         counts = [sum(row["verdict"] == verdict for row in group) for verdict in VERDICTS]
         least_and_median = (digits[0], digits[len(digits) // 2]) if digits else (None, None)
         found.append((axis, len(group), *counts, *least_and_median))
-    head = ("axis", "states", *VERDICTS.values(), "fewest digits kept", "median")
+    head = ("axis", "states", *VERDICTS, "fewest digits kept", "median")
     return Table("Verdicts by axis; digits of the right ones.", head, found)

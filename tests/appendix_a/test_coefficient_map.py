@@ -7,26 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from appendix_a.fem.coefficient_map import CoefficientMap, height_change, interpolation_error
+from appendix_a.fem.coefficient_map import CoefficientMap, height_change
 from appendix_a.fem.halfplane import pressed_strip
-from appendix_a.fem.map2d import OFFSETS, compute
-from appendix_a.fem.sinusoid import departures
 from appendix_a.leading_order import coupling, first_order
 from tests.appendix_a.made_up import invented
-
-
-@pytest.mark.nightly
-def test_a_computed_entry_is_the_solve_it_came_from():
-    table = compute((10.0,), (32.0,), (0.125,), workers=1)
-    direct = departures(10.0, 32.0, 0.125, OFFSETS, (0, 1, 2))
-    square = np.tan(np.radians(10.0)) ** 2
-    amplitude = np.tan(np.radians(10.0)) * 32.0 / (2 * np.pi)
-    ends = np.sign(OFFSETS) / 32.0 + 0.125
-    climb = amplitude * (np.cos(2 * np.pi * 0.125) - np.cos(2 * np.pi * ends))
-    for nu in (0.0, 0.2, 0.4999):
-        rest = square * (1 + nu) * ((3 - 4 * nu) * table.kappa_part + table.constant_part)[0, 0, 0]
-        assert rest - coupling(nu) * climb == pytest.approx(direct.meshes[-1].at(nu), abs=1e-12)
-    assert 0.0 < table.error_percentage_points.max() < 0.02
 
 
 def test_lookup_meets_the_nodes_and_mirrors():
@@ -38,12 +22,6 @@ def test_lookup_meets_the_nodes_and_mirrors():
     assert crest == pytest.approx(node - coupling(nu) * climb, abs=1e-12)
     downhill, uphill = table.departure(10.0, 32.0, 0.2, nu), table.departure(10.0, 32.0, 0.8, nu)
     assert uphill == pytest.approx(downhill[::-1], abs=1e-12)
-
-
-def test_the_stated_interpolation_error_is_small_and_grows_with_the_slope():
-    steep, gentle = interpolation_error(25.0), interpolation_error(6.5)
-    assert gentle < steep
-    assert steep[0] < steep[1] < 0.07
 
 
 TABLE_OFFSETS = np.array([-3.0, -0.5, 2.0, 4.0])
@@ -59,7 +37,7 @@ TABLE = CoefficientMap(
 )
 
 
-@pytest.mark.parametrize("wavelength", [80.0001, 200.0, 1e4])
+@pytest.mark.parametrize("wavelength", [80.0001, 1e4])
 def test_beyond_the_largest_wavelength_the_rest_is_taken_from_there(wavelength: float) -> None:
     """At nu = 1/2 there is no first order: the same table entry, whatever the wavelength."""
     found, last = (TABLE.departure(7.0, length, 0.25, 0.5) for length in (wavelength, 80.0))

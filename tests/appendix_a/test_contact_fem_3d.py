@@ -7,15 +7,9 @@ import pytest
 
 from appendix_a.contact_fem import solid_contact
 from appendix_a.contact_fem.solid import asperity
-from appendix_a.contact_fem.solid_contact import press
-from verification.cases.appendix_a.model_form_3d import SHIFT, SLIGHT, SLOPE, by_model, pair_of
+from verification.cases.appendix_a.model_form_3d import SLIGHT, by_model, pair_of
 from verification.cases.appendix_a.solid_half_space import (
-    BETA,
-    COPPER,
-    SHARE,
-    STEEL,
     by_elements,
-    distance_of,
 )
 
 
@@ -47,15 +41,6 @@ def test_forces_of_unit_pressure_close_on_the_projection() -> None:
 
 
 def test_without_slope_the_model_and_the_elements_agree() -> None:
-    fem, model = by_elements(pair_of(SLIGHT), 3), by_model(SLIGHT, 64)
+    fem, model = by_elements(pair_of(SLIGHT), 3), by_model(SLIGHT, 48)
     assert fem[0] == pytest.approx(model[0], rel=5e-3)  # 0.2 % measured
     assert fem[1] == pytest.approx(model[1], rel=1e-3)
-
-
-def test_climbing_at_a_slope_raises_friction_as_in_the_model() -> None:
-    pair = pair_of(SLOPE)
-    distance, load = distance_of(pair), SHARE * pair.full_contact_pressure
-    body = asperity(pair.amplitude, -SHIFT / 2, 0.3, 3)
-    found = press(body.of_modulus(COPPER.E), body.mirrored().of_modulus(STEEL.E), distance, load, BETA)
-    # 0.05 % measured; without the shear of the mean planes taken off, or with other tangents, 0.5 % and more
-    assert found.friction_coefficient == pytest.approx(by_model(SLOPE, 64)[1], rel=2e-3)

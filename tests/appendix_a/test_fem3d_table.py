@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import math
 from importlib.resources import as_file, files
-from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -16,17 +14,10 @@ from appendix_a.errors import InputError
 from appendix_a.fem3d import coefficients as module
 from appendix_a.fem3d.coefficients import (
     LABELS,
-    MESH_ORDER,
-    RADIUS_ORDER,
-    SAFETY,
-    Coefficients3D,
-    Quality,
     coefficients,
-    extrapolated,
 )
 from appendix_a.fem3d.leading_order import waves
 from appendix_a.fem3d.patch import normal_coefficient
-from appendix_a.fem3d.study import Point, row
 from appendix_a.fem3d.surface import Sample, X, Y
 from appendix_a.fem3d.table import Series, Table3D, condensed, main
 from appendix_a.fem3d.wavy import Kind, Waviness
@@ -96,39 +87,6 @@ def test_what_is_a_crest_to_one_body_is_a_valley_to_the_other() -> None:
     assert found == pytest.approx(np.full(10, (0.1 + 2 * 0.4) / 3))
 
 
-FAMILIES = [
-    *((tuple(1 / level for level in quality.levels), MESH_ORDER, 2.5) for quality in Quality),
-    *((tuple(1 / radius for radius in quality.radii), RADIUS_ORDER, 2.0) for quality in Quality),
-]
-
-
-def error_and_differences(steps: tuple[float, ...], order: int, power: float) -> np.ndarray:
-    """Error of the limit of step^power; its change from the finest value, from the coarse pair's limit."""
-    values = [np.array([step**power]) for step in steps]
-
-    def limit(coarse: int, fine: int) -> float:
-        ratio = (steps[coarse] / steps[fine]) ** order
-        return float(values[fine][0] + (values[fine][0] - values[coarse][0]) / (ratio - 1))
-
-    last, stated = extrapolated(values, list(steps), order)
-    changes = limit(1, 2) - values[2][0], limit(1, 2) - limit(0, 1)
-    assert stated[0] == pytest.approx(SAFETY * np.abs(changes).max(), rel=1e-12)
-    return np.array([last[0], *changes])
-
-
-def largest_quotient(steps: tuple[float, ...], order: int, powers: tuple[float, float]) -> float:
-    """Error over stated error for the worst weights of two powers."""
-    error, *changes = np.array([error_and_differences(steps, order, power) for power in powers]).T
-    return float(np.abs(np.linalg.solve(np.transpose(changes), error)).sum() / SAFETY)
-
-
-@pytest.mark.parametrize(("steps", "order", "least"), FAMILIES)
-def test_any_two_powers_are_covered(steps: tuple[float, ...], order: int, least: float) -> None:
-    powers = np.arange(least, 8.01, 0.25)
-    quotients = [largest_quotient(steps, order, pair) for pair in combinations(powers.tolist(), 2)]
-    assert max(quotients) < 0.82
-
-
 FLANK = Series(20.0, 0.25, 0.3)
 
 
@@ -166,12 +124,6 @@ def at_flank(row: dict[str, object]) -> bool:
     return series == FLANK
 
 
-def test_mirrored_position_changes_the_neighbours(table: Table3D) -> None:
-    here, there = table.error(FLANK, 10.0), table.error(Series(20.0, 0.75, 0.3), 10.0)
-    assert there[1:4].tolist() == here[4:7].tolist()
-    assert there[7:].tolist() == here[7:].tolist()
-
-
 def test_refuses_series_and_files_that_it_does_not_hold(table: Table3D, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="series"):
         table.error(Series(21.0, 0.25, 0.3), 5.0)
@@ -179,13 +131,3 @@ def test_refuses_series_and_files_that_it_does_not_hold(table: Table3D, tmp_path
     other.write_text('{"table": "other"}')
     with pytest.raises(InputError, match="table"):
         Table3D.read(other)
-
-
-def test_a_row_of_the_three_dimensional_study() -> None:
-    parts = [np.array([k / 7.0, -0.0]) for k in range(1, 5)]
-    made = row(Point(6.5, 20.0, 0.25, 0.3), Coefficients3D(9 * parts[0], *parts, 1.234e-9, 81), 2.345)
-    assert [*made.values()][7:] == [
-        [0.142857, 0.0], [0.286, 0.0], [0.429, 0.0], [0.571, 0.0], 1.2e-9, 81, 2.3,
-    ]  # fmt: skip
-    assert list(made)[7:10] == ["error", "discretisation", "truncation"]
-    assert math.copysign(1.0, made["error"][1]) == 1.0  # type: ignore[index]

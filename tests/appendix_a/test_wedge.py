@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import astuple
-
 import mpmath as mp
 import numpy as np
 import pytest
 
-from appendix_a.wedge import displacements, enclosure, fast, printed, reference, stresses
+from appendix_a.wedge import displacements, fast, stresses
 from appendix_a.wedge.transform import remainders
 
-GAMMAS = (0.0, 1e-6, 0.3, 1.0, 1.5)
+GAMMAS = (0.0, 1e-6, 1.0, 1.5)
 
 
 @pytest.mark.parametrize("gamma", GAMMAS)
@@ -50,8 +48,7 @@ def test_end_of_the_load_takes_the_mean() -> None:
     assert sigma_r == pytest.approx((inside + outside) / 2, abs=1e-7)
 
 
-@pytest.mark.parametrize("gamma", [1e-6, 0.4, 1.2])
-@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+@pytest.mark.parametrize(("gamma", "nu"), [(1e-6, 0.3), (1.2, 0.0)])
 def test_displacements_have_the_strains_of_the_stresses(gamma: float, nu: float) -> None:
     r, theta = np.array([0.3, 0.8, 2.0, 30.0]), np.array([0.3, -0.6, 0.9, 0.1]) * (np.pi / 2 - gamma)
     x, y, h = r * np.cos(theta), r * np.sin(theta), 1e-3
@@ -100,15 +97,6 @@ def test_angles_from_the_face_keep_their_digits(gamma: float) -> None:
     np.testing.assert_allclose(sine, np.array(sines, dtype=float), rtol=1e-15)
 
 
-def test_literal_kernel_does_not_decay() -> None:
-    """(A7) to the letter: xi cancels."""
-    theta, gamma = 0.4, 0.3
-    above = np.cos(0.7) * np.cosh(np.pi / 2 + 0.1) + np.cos(-0.1) * np.cosh(np.pi / 2 - 0.7)
-    expected = above / (np.sin(0.6) + np.sinh(np.pi - 0.6))
-    for xi in (0.5, 3.0, 40.0):
-        assert printed.literal_p(xi, theta, gamma) == pytest.approx(expected, rel=1e-14)
-
-
 @pytest.mark.parametrize(("gamma", "nodes"), [(1e-6, 188), (1.5, 4155)])
 def test_a_map_takes_one_line_of_few_nodes(gamma: float, nodes: int) -> None:
     """However many points it has. The last node is the first whose terms are below exp(-CUTOFF)."""
@@ -121,18 +109,7 @@ def test_a_map_takes_one_line_of_few_nodes(gamma: float, nodes: int) -> None:
     assert fast.CUTOFF <= reach < fast.CUTOFF + step
 
 
-def test_the_tails_bound_is_checked(monkeypatch: pytest.MonkeyPatch) -> None:
-    """From xi = 1 on, ``|z| sin(2 alpha) <= sinh(2 alpha xi) / 2`` fails for alpha = 1/2: 1.26 and 0.59."""
-    arb = pytest.importorskip("flint", reason="python-flint is an optional extra").arb
-    monkeypatch.setattr(enclosure, "TAIL_EXPONENT", 0.1)
-    with pytest.raises(ArithmeticError, match="from xi = 1"):
-        enclosure._tail_start(arb, arb(0.5), arb(0.0))
-    with pytest.raises(ArithmeticError, match="from xi = 1"):
-        enclosure._tail_start(arb, arb(0.895), arb(0.0))  # 1.464 and 1.456
-    assert enclosure._tail_start(arb, arb(1.0), arb(0.0)) == 1  # 1.36 and 1.81
-
-
-@pytest.mark.parametrize("gamma", [1e-6, 0.2, 0.9, 1.5])
+@pytest.mark.parametrize("gamma", [1e-6, 1.5])
 def test_remainders_complete_the_kernels(gamma: float) -> None:
     """R_S, R_T plus the half-planes' kernels are S, T, in 60 digits."""
     for xi in (0.0, 0.3, 2.0, 9.0):
@@ -145,31 +122,3 @@ def test_remainders_complete_the_kernels(gamma: float) -> None:
             # both terms of a numerator are of order gamma, and may cancel to gamma^2
             assert abs(complex(s) - r_s[0]) <= 1e-13 * abs(complex(s)) + 1e-15 * gamma
             assert abs(complex(t) - r_t[0]) <= 1e-13 * abs(complex(t)) + 1e-15 * gamma
-
-
-def test_reference_stops_after_eight_negligible_terms_in_a_row(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A small term amid large ones is no end: the count begins anew at each large one."""
-    asked = []
-
-    def kernels(*_: object) -> list[mp.mpc]:
-        asked.append(len(asked) + 1)
-        return [mp.mpc(0, 0 if asked[-1] in (2, 3) or asked[-1] > 6 else 1)] * 3
-
-    monkeypatch.setattr(reference, "kernels", kernels)
-    reference._sum((mp.mpf(1), mp.mpf(0), mp.mpf("0.3")), mp.mpf(0), mp.mpf("0.1"), mp.mpf("1e-20"))
-    assert len(asked) == 6 + reference.QUIET_TERMS
-
-
-@pytest.mark.parametrize("r", [1e-3, 0.5, 1.0, 30.0])
-@pytest.mark.parametrize("gamma", [0.05, 0.7])
-def test_printed_panels_follow_the_shortest_scale(
-    r: float, gamma: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Seen with a rule of two points: halved panels err a sixteenth, so their change bounds what is left."""
-    exact = printed.stresses(r, 0.1, gamma)
-    monkeypatch.setattr(printed, "GAUSS", np.polynomial.legendre.leggauss(2))
-    found = printed.stresses(r, 0.1, gamma)
-    left = np.subtract(astuple(found)[:3], astuple(exact)[:3])
-    assert np.abs(left).max() <= 0.05 * found.error  # 0.035 at most; a third fewer panels: 0.29
-    if r == 0.5:  # where both are as they are from afar
-        assert np.abs(left).max() >= 0.002 * found.error  # 0.004 at least; a first rule half as fine: 0.0005

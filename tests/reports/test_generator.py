@@ -7,7 +7,7 @@ from html.parser import HTMLParser
 
 import pytest
 
-from reports.generator import facts, render
+from reports.generator import render
 from reports.results import ResultFileError, check
 from reports.text import judgement
 from tests.reports.sample import ERRATUM, TEXTBOOK, case, results
@@ -86,12 +86,6 @@ def test_the_summary_lists_what_did_not_pass() -> None:
     ]
 
 
-def test_the_summary_lists_nothing_when_all_passed() -> None:
-    page = summary_of(render(results(case("a/1"), case("a/2"))))
-    assert not [link for link in page.links if link.startswith("#case")]
-    assert "did not pass" not in page.text
-
-
 def test_no_request_leaves_the_page() -> None:
     page = Page(render(results(case("kernels/textbook-normal-fails", data=TEXTBOOK))))
     assert all(link.startswith(("#", "data:text/csv;charset=utf-8,")) for link in page.links)
@@ -100,9 +94,8 @@ def test_no_request_leaves_the_page() -> None:
     assert page.images[0]["role"] == "img"
 
 
-@pytest.mark.parametrize("data", [{}, {**TEXTBOOK, "textbook": []}, {**TEXTBOOK, "production": None}])
-def test_a_figure_without_data_is_not_available(data: dict[str, object]) -> None:
-    page = Page(render(results(case("kernels/textbook-normal-fails", data=data))))
+def test_a_figure_without_data_is_not_available() -> None:
+    page = Page(render(results(case("kernels/textbook-normal-fails", data={**TEXTBOOK, "textbook": []}))))
     assert page.images == []
     assert "Figure not available" in page.text
 
@@ -112,11 +105,8 @@ def test_a_figure_without_data_is_not_available(data: dict[str, object]) -> None
     [
         ("relative", "pass", "0.0123 ≤ 0.457"),
         ("relative", "fail", "0.0123 > 0.457"),
-        ("absolute", "pass", "0.0123 ≤ 0.457"),
-        ("at_most", "fail", "0.0123 > 0.457"),
         ("at_least", "pass", "0.0123 ≥ 0.457"),
         ("at_least", "fail", "0.0123 < 0.457"),
-        ("equal", "pass", "0.0123 ≤ 0.457"),
     ],
 )
 def test_a_judgement_says_which_way_it_went(metric: str, status: str, said: str) -> None:
@@ -125,35 +115,11 @@ def test_a_judgement_says_which_way_it_went(metric: str, status: str, said: str)
     assert judgement(judged) == said
 
 
-@pytest.mark.parametrize(
-    ("data", "said"),
-    [
-        ({"table": {}}, []),
-        ({"table": {str(k): k for k in range(12)}}, ["table"]),
-        ({"table": {str(k): k for k in range(13)}}, []),
-        ({"table": {"deep": [1]}}, []),
-        ({"word": "so", "truth": True, "nothing": None, "share": 0.123456}, ["so", "True", "n/a", "0.1235"]),
-    ],
-)
-def test_of_what_a_case_recorded_single_entries_are_printed(data: dict[str, object], said: list[str]) -> None:
-    found = facts(data)
-    assert [name if name == "table" else text for name, text in found] == said
-
-
 def test_errata_an_uncommitted_tree_and_a_selection_are_shown() -> None:
     made = results(case("a/1"), errata=[ERRATUM], only=["a/*"])
     made["provenance"]["dirty"] = True
     page = Page(render(made))
-    for text in (
-        "A4",
-        "sin xi",
-        "0.3",
-        "cos xi",
-        "1e-12",
-        "residual",
-        "with uncommitted changes",
-        "only a/*",
-    ):
+    for text in ("A4", "sin xi", "0.3", "cos xi", "1e-12", "with uncommitted changes", "only a/*"):
         assert text in page.text
 
 
@@ -161,13 +127,11 @@ def test_errata_an_uncommitted_tree_and_a_selection_are_shown() -> None:
     "broken",
     [
         None,
-        [],
         {"format": "another"},
         {k: v for k, v in results().items() if k != "cases"},
         results({k: v for k, v in case("a/1").items() if k != "tolerance_reason"}),
         results(case("a/1", "passed")),
         results(case("a/1"), errata=[{"equation": "A4"}]),
-        results(case("a/1"), errata={}),
         results() | {"cases": {}},
         results(case("a/1", "fail"), case("a/1")),
         results(case("a/1"), provenance={}),
@@ -177,43 +141,3 @@ def test_errata_an_uncommitted_tree_and_a_selection_are_shown() -> None:
 def test_what_is_not_a_result_file_is_refused(broken: object) -> None:
     with pytest.raises(ResultFileError):
         check(broken)
-
-
-def test_a_figure_stands_on_the_page_once() -> None:
-    law = {"load / load of first yield": [1, 2], "mean pressure / H, cap": [0.5, 0.6]}
-    data = law | {"mean pressure / H, law": [0.5, 0.7]}
-    other = law | {"mean pressure / H, law": [0.5, 0.8]}
-    for second, number in ((dict(data), 1), (other, 2)):
-        made = results(
-            case("capped/sphere-k", title="one", data=data), case("capped/sphere-j", title="one", data=second)
-        )
-        assert len(Page(render(made)).images) == number
-
-
-def test_progress_names_every_case_as_it_is_drawn() -> None:
-    told: list[str] = []
-    render(results(case("a/1"), case("hertz/b")), progress=told.append)
-    assert {"a/1", "hertz/b"} <= set(told)
-
-
-def run_of(seconds: float, date: str, commit: str, processor: str) -> dict[str, object]:
-    made = results(case("kernels/textbook-normal-fails", data=TEXTBOOK, seconds=seconds))
-    machine = {"cores": 2, "processor": processor, "platform": "Linux"}
-    made["provenance"] |= {"date": f"{date}T00:00:00+00:00", "commit": commit, "machine": machine}
-    return made
-
-
-def test_pages_of_two_runs_differ_in_provenance_alone() -> None:
-    expected = render(run_of(11.1, "2001-01-01", "a1" * 20, "one"))
-    changes = {"11.1 s": "22.2 s", "2001-01-01": "2002-02-02", "a1" * 20: "b2" * 20, "one, 2": "two, 2"}
-    for there, here in changes.items():
-        assert there in expected
-        expected = expected.replace(there, here)
-    expected = expected.replace("a1" * 6, "b2" * 6)
-    assert render(run_of(22.2, "2002-02-02", "b2" * 20, "two")) == expected
-
-
-def test_provenance_has_commands_of_which_the_second_reads_what_the_first_writes() -> None:
-    page = render(results(case("a/1"), only=["a/*"]))
-    first = "rough-friction verify --tier quick --only &#39;a/*&#39; --json results.json"
-    assert f"{first}\nrough-friction report --results results.json" in page

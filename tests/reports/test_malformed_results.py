@@ -6,6 +6,7 @@ import copy
 import json
 from collections.abc import Iterator
 from contextlib import suppress
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -13,17 +14,14 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from reports.generator import anchor, render
-from reports.results import METRICS, ResultFileError, check, verdict_of
+from reports.generator import render
+from reports.results import ResultFileError, check
 from tests.reports.sample import ERRATUM, TEXTBOOK, case, results
 from tests.verification.cli.children import Ended, one_line
 from verification.cli import main
 
-Capture = pytest.CaptureFixture[str]
-ORDER = "reference/x-approach-order"  # a case with a figure of errors over grids
 WHOLE = results(
     case("kernels/textbook-normal-fails", data=TEXTBOOK),
-    case(ORDER, "fail", data={"M": [32, 64, 128], "error": [4.0, 2.0, 1.0], "verdict": "not confirmed"}),
     case("a/2", "unavailable"),
     errata=[ERRATUM],
 )
@@ -61,76 +59,28 @@ def shown_or_refused(document: object, against: object = None) -> None:
 PLACES = list(places(WHOLE))
 
 
-@pytest.mark.parametrize("path", PLACES, ids=lambda path: ".".join(map(str, path)))
-def test_every_field_with_every_other_kind_of_value_is_checked(path: tuple[Any, ...]) -> None:
-    for value in REPLACEMENTS:
+def test_every_field_with_every_other_kind_of_value_is_checked() -> None:
+    for path, value in product(PLACES, REPLACEMENTS):
         with suppress(ResultFileError):  # and nothing else
             check(replaced(WHOLE, path, value))
 
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # logarithms of what is no error
-@settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=5, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.sampled_from(PLACES), st.sampled_from(REPLACEMENTS), st.booleans())
 def test_what_passes_the_check_is_shown(path: tuple[Any, ...], value: object, older: bool) -> None:
     made = replaced(WHOLE, path, value)
     shown_or_refused(WHOLE if older else made, made if older else None)
 
 
-def test_a_run_of_an_unknown_machine_is_shown() -> None:
-    assert "n/a" in render(
-        replaced(replaced(WHOLE, ("provenance", "machine"), {}), ("provenance", "versions"), {})
-    )
-
-
-DATA_VALUES = st.recursive(
-    st.none() | st.booleans() | st.integers(-(10**19), 10**19) | st.floats() | st.text(max_size=3),
-    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=3), inner, max_size=3),
-    max_leaves=6,
-)
-
-
-@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # logarithms of what is no error
-@settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-@given(st.dictionaries(st.sampled_from(["offset", "textbook", "production"]), DATA_VALUES))
-def test_data_of_any_shape_are_shown_or_refused(data: dict[str, Any]) -> None:
-    shown_or_refused(results(case("kernels/textbook-normal-fails", data=data)))
-
-
-NUMBERS = st.floats(-1e3, 1e3) | st.sampled_from([0.0, 1e-9, 0.1, 5.0])
-
-
-@given(st.sampled_from(METRICS), NUMBERS, NUMBERS, NUMBERS, st.sampled_from(["pass", "fail"]))
-def test_no_status_passes_that_the_numbers_contradict(
-    metric: str, value: float, reference: float, tolerance: float, status: str
-) -> None:
-    """Errors by the formulas of the guide, tolerances of any size: a pass means error <= tolerance."""
-    judged = metric not in ("at_most", "at_least")
-    error = abs(value - reference) / (abs(reference) or 1.0 if metric == "relative" else 1.0)
-    made = case(
-        "a/1", status, metric=metric, value=value, reference=reference if judged else None,
-        reference_uncertainty=0.0, error=error if judged else value, tolerance=tolerance,
-    )  # fmt: skip
-    try:
-        check(results(made))
-    except ResultFileError:
-        return
-    assert verdict_of(made) == status
-    if status == "pass" and metric != "at_least":
-        assert (abs(value - reference) if judged else value) <= tolerance * (
-            abs(reference) if metric == "relative" else 1.0
-        ) * (1 + 1e-15)
-
-
 DISHONEST = {
     "error above the tolerance": {"error": 5.0, "value": 6.0, "tolerance": 1e-9},
     "error not that of the value": {"value": 6.0, "error": 0.0},
     "no error": {"error": None},
-    "no value": {"value": None, "error": 0.0},
     "no number": {"error": float("nan")},
     "failed although within": {"status": "fail", "value": 1.01},
     "below the merit": {"metric": "at_least", "reference": None, "value": 0.05, "error": 0.05},
     "uncertain reference": {"reference_uncertainty": 0.2},
-    "unknown metric": {"metric": "at most"},
     "not judged, with a number": {"status": "unavailable", "value": 1.0},
     "negative tolerance": {"tolerance": -1.0},
 }
@@ -151,24 +101,3 @@ def test_data_that_its_figure_cannot_show_is_one_line(
     command = ["report", "--results", str(tmp_path / "r.json"), "--committed", str(none)]
     assert main([*command, "--output", str(tmp_path / "out")]) == 2
     one_line(Ended(2, capsys.readouterr().err), "data of case 'kernels/textbook-normal-fails'", 2)
-
-
-def test_a_pipe_without_an_end_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["report", "--results", "/dev/zero", "--output", str(tmp_path / "out")]) == 2
-    one_line(Ended(2, capsys.readouterr().err), "regular file", 2)
-
-
-LOOK_ALIKES = st.text("a/-._2f", min_size=1)
-IDS = st.text(st.characters(codec="utf-8", exclude_categories=["Z", "C"]), min_size=1)
-
-
-@given(LOOK_ALIKES | IDS, LOOK_ALIKES | IDS)
-def test_different_ids_have_different_anchors(one: str, other: str) -> None:
-    assert (anchor(one) == anchor(other)) == (one == other)
-
-
-def test_a_command_of_an_open_quote_is_refused_by_its_own_option(tmp_path: Path, capfd: Capture) -> None:
-    alien = replaced(WHOLE, ("provenance", "command"), "verify 'x")
-    (tmp_path / "r.json").write_text(json.dumps(alien | {"solver": {"name": "mine"}}))
-    assert main(["report", "--results", str(tmp_path / "r.json"), "--output", str(tmp_path / "out")]) == 2
-    assert "--results" in capfd.readouterr().err

@@ -36,7 +36,7 @@ EXTREMES = Names(
     states=[
         {"axis": a, "series": f"s, {s}", "verdict": v, "digits": d, "oracle": "x"} for a, s, v, d in STATES
     ],
-    counts=Names(), table=[Names()], limits=[Names()],
+    counts=Names(), table=[Names()], limits=[Names(), Names(rule="", states=["a", "b"])],
     conditioning={"M": [2], "condition": [3.5], "CG iterations": [4], "digits lost by a direct solve": [0.5]},
 )  # fmt: skip
 EXTREMES["lawful states"] = [Names(statuses={"fft": {"converged": 5, "cycle": 3, "stuck": 4}})]
@@ -131,7 +131,8 @@ ROWS: list[tuple[str, int, list[Any]]] = [
     ("experiments", 0,
      [(0.5, "40.0 ± 2.0", "41.2", "0.01", "3", "+1.2", "3.6", True),
       ("r", "40.0 ± 2.0", "99.0", "0.01", "3", "+59.0", "3.6", False)]),
-    ("extremes", 0, [("load", 5, 3, 1, 1, 0, 3, 7), ("scale", 1, 0, 0, 0, 1, None, None)]),
+    ("extremes", 0, [("load", 5, 3, 1, 0, 1, 0, 3, 7), ("scale", 1, 0, 0, 0, 0, 1, None, None)]),
+    ("extremes", 2, [("kind", "what", "why", "evidence", states) for states in ("rule", "a, b")]),
     ("extremes", 3, [("tau", "none", "one", "several", 7)]),
     ("extremes", 4, [(2, 3.5, 4, 0.5)]),
     ("hypothesis", 0, [("turn", "alike", 6, 3)]),
@@ -181,8 +182,9 @@ def test_codes_that_are_not_there_are_named() -> None:
 def test_results_of_few_digits_and_second_solves_are_reported_apart() -> None:
     judges = [("Hertz", 3.1), ("Hertz", 12.0), ("the scaling law", 17.0), ("the dense solver", 0.05)]
     states = [{"verdict": "right", "oracle": oracle, "digits": digits} for oracle, digits in judges]
-    said = sentence({"states": states, "counts": {"wrong": 0, "crash": 0, "detected failure": 0}})
-    assert "4 right, 2 of them to fewer than 6 digits; 2 of the right ones are judged by a second" in said
+    counts = {"wrong": 0, "crash": 0, "detected failure": 0, "unjudged": 5}
+    said = sentence({"states": states, "counts": counts})
+    assert "5 not judged, 4 right, 2 of them to fewer than 6 digits, the least 0.1; 2 of the right" in said
 
 
 def test_the_first_page_says_where_the_model_fails() -> None:

@@ -4,8 +4,6 @@ Its default H2 operator approximates the influence coefficients to some 1e-6, be
 here, so the exact one takes its place ("modestly faster", its authors say, up to 2048 x 2048).
 
 Its extra builds from source: that takes a C++17 compiler, CMake, and Eigen (Debian's libeigen3-dev).
-
-``rough-friction verify --solver aspher``
 """
 
 from __future__ import annotations
@@ -23,8 +21,7 @@ _ITERATIONS = 5000
 
 
 def press(problem: ContactProblem, **options: str) -> PublishedAnswer:
-    """Return the pressures of ``solve_nested`` with its ``options``, or of ``ContactSolver`` where M is not
-    64 2^k.
+    """Return the pressures of ``solve_nested`` with its ``options``; of ``ContactSolver`` if M is not 64 2^k.
 
     Its Frank-Wolfe error is the mean gap under the pressure over the range of the gap, and over one unit of
     length where the gap is flat: the unit is ``P / (E* side)``, about the approach, to give that a meaning.
@@ -51,7 +48,6 @@ def press(problem: ContactProblem, **options: str) -> PublishedAnswer:
 
 
 def _halves(M: int) -> bool:
-    """Return whether M is 64 times a power of two."""
     levels, rest = divmod(M, _COARSEST)
     return rest == 0 and levels > 0 and levels & (levels - 1) == 0
 

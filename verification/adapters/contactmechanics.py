@@ -7,8 +7,6 @@ version 1.8.3 calls the uniform pressure of its first iteration converged (`nega
 
 A hardness is an argument of ``minimize_proxy``, as a force of an element. Where most of the contact is at it
 the solver turns to relaxation, and may not end.
-
-``rough-friction verify --solver contactmechanics``
 """
 
 from __future__ import annotations
@@ -68,8 +66,7 @@ def _half_space(package: ModuleType, problem: ContactProblem, mean_stiffness: fl
 
 
 def _tolerances(problem: ContactProblem) -> dict[str, float]:
-    """Return the absolute ones in m and N: the defaults are not meant for SI units, nor for a relative gap of
-    1e-8.
+    """Return the absolute ones in m and N: the defaults fit neither SI units nor a relative gap of 1e-8.
 
     Penetrations up to ``pentol`` under the pressure make at most twice that of mean gap.
     """

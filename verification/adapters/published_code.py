@@ -72,11 +72,7 @@ class PublishedCode:
         return identity.of_distribution(self.distribution)
 
     def __call__(self, problem: ContactProblem) -> PublishedAnswer:
-        """Return the peer's answer.
-
-        Raises `Unavailable` where the peer is not installed and `Unsupported` where it cannot pose the
-        problem.
-        """
+        """Return the peer's answer. Raises `Unavailable` without the peer, `Unsupported` where it cannot."""
         if self.installed is None:
             raise Unavailable(f"{self.distribution} is not installed: {self.installation}")
         lacking = self.abilities.lacking(problem)
@@ -86,8 +82,7 @@ class PublishedCode:
 
 
 def closure(problem: ContactProblem) -> float:
-    """Return the mean gap under the pressure, ``sum f (v - min v) / sum f``, at which the tolerance is met
-    (m).
+    """Return the mean gap under the pressure (m) that meets the tolerance, ``sum f (v - min v) / sum f``.
 
     The relative gap is that over half the mean displacement under the pressure, ``depth``. No contact of load
     P in a domain has a smaller one than the square punch that contains it, 0.87 P / (E* max(Lx, Ly)); at an
@@ -108,8 +103,7 @@ def closure(problem: ContactProblem) -> float:
 
 
 def _flattening(problem: ContactProblem) -> float:
-    """Return the elastic energy (J) of a periodic surface in full contact: pressures ``E* q/2`` times its
-    waves."""
+    """Return the elastic energy (J) of periodic full contact: pressures ``E* q/2`` times its waves."""
     x, y = (2 * np.pi * np.fft.fftfreq(n, d) for n, d in zip(problem.shape, problem.spacings, strict=True))
     wave = np.hypot(x[:, None], y)
     pressure = np.fft.ifft2(np.fft.fft2(problem.gap) * wave * (0.5 * problem.reduced_modulus)).real

@@ -56,8 +56,7 @@ class Elsewhere(PublishedCode):
 
 
 def press(problem: ContactProblem, *, option: str = "") -> PublishedAnswer:
-    """Return the pressures of the program; ``option`` is ``--frequency`` for SlipPY's default in free
-    space."""
+    """Return the program's pressures; ``option`` is ``--frequency`` for SlipPY's default in free space."""
     words = [os.environ[INTERPRETER], str(PROGRAM), *shlex.split(option)]
     answer = Command(tuple(words), ABILITIES, SECONDS)(problem)
     return PublishedAnswer(answer.pressure, answer.converged)

@@ -63,7 +63,6 @@ class Watched:
         return abilities_of(self.solver)
 
     def __call__(self, problem: ContactProblem) -> Answer:
-        """Return the solver's answer, unchanged."""
         start = time.perf_counter()
         answer = self.solver(problem)
         self.seconds.append(time.perf_counter() - start)
@@ -72,8 +71,7 @@ class Watched:
 
 
 def recomputed(problem: ContactProblem, pressure: Array) -> float:
-    """Return the worst residual recomputed by the suite; NaN without one (too large, or no elastic
-    energy)."""
+    """Return the worst residual recomputed by the suite; NaN without one (too large, or no energy)."""
     too_large = reference_solution.is_large(problem) and not problem.periodic
     if pressure.shape != problem.gap.shape or too_large or reference_solution.stores_no_energy(problem):
         return float("nan")
@@ -133,8 +131,7 @@ def _entrant(name: str, solver: Solver) -> dict[str, object]:
 
 
 def summarised(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return the rows of the cases, and one for each covering design: its worst error, and which problems
-    failed."""
+    """Return the rows of the cases, and one a covering design: its worst error, and what failed."""
     single = [dict(row) for row in rows if _design(row["id"]) is None]
     designs: dict[str, list[Mapping[str, Any]]] = {}
     for row in rows:
@@ -144,7 +141,6 @@ def summarised(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _short(value: Any) -> Any:
-    """Return the four digits of a number: no report shows more."""
     return float(f"{value:.4g}") if isinstance(value, float) else value
 
 

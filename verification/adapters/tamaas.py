@@ -9,8 +9,6 @@ than the pins move (`verification.solver_suite.checks.hardness`), it comes to re
 Free space takes two steps: ``registerNonPeriodic`` adds the zero-padded operator to the model, and
 ``setIntegralOperator`` tells the solver to use it. Without the second, Tamaas 2.9.0 solves the periodic
 problem and says nothing; `verification.adapters.negative_controls` keeps that in view.
-
-``rough-friction verify --solver tamaas``
 """
 
 from __future__ import annotations
@@ -30,8 +28,7 @@ _GAP_FORMULATION = 0.3
 
 
 def press(problem: ContactProblem, *, second_step: bool = True) -> PublishedAnswer:
-    """Return the pressures of the Polonsky-Keer solver. Its error is the mean gap under the pressure over
-    std(heights).
+    """Return the Polonsky-Keer pressures; the solver's error is the mean gap under them over std(heights).
 
     Loads are mean pressures. A periodic approach is minus the mean gap, which the same solver takes as
     constraint of its gap formulation. ``second_step=False`` gives the negative control. Raises `Unsupported`
@@ -66,10 +63,7 @@ def press(problem: ContactProblem, *, second_step: bool = True) -> PublishedAnsw
 
 
 def _saturated(problem: ContactProblem, unit: float) -> PublishedAnswer:
-    """Return the pressures up to the hardness; ``unit`` (Pa) is that of moduli and pressures: E* to be right.
-
-    Raises `Unsupported` for an approach: the solver takes loads.
-    """
+    """Return pressures up to the hardness in units of ``unit`` (Pa), E*. `Unsupported` for an approach."""
     tm = imported("tamaas")
     if problem.load is None or problem.hardness is None:
         raise Unsupported("tamaas does not offer: an approach with a hardness")

@@ -70,8 +70,7 @@ def class_scene(name: str, seed: int) -> rf.Scene:
 def solve_grids(
     scene: rf.Scene, grids: Sequence[int] = GRIDS, reference: int = REFERENCE
 ) -> list[dict[str, Any]]:
-    """Return a row for each grid: work in transforms of 256 x 256 elements, seconds, relative errors and
-    error bars.
+    """Return a row a grid: work in transforms of 256 x 256, seconds, relative errors and error bars.
 
     Both are of the numbers that are not zero, and infinite where the grid's state is not settled. Raises
     ArithmeticError where the reference is not.
@@ -114,10 +113,7 @@ def coarsest(
 
 
 def costs(realisations: Sequence[Sequence[Mapping[str, Any]]], key: str = "errors") -> list[dict[str, Any]]:
-    """Return the median cost of every demand over realisations; none where one of them meets it nowhere.
-
-    Demands are of "errors", or of "bars".
-    """
+    """Return the median cost of every demand of "errors" or "bars"; none where one realisation fails it."""
     rows = []
     for quantity, demand in itertools.product(realisations[0][0][key], DEMANDS):
         offers = [coarsest(grids, quantity, demand, key) for grids in realisations]

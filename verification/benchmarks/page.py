@@ -23,10 +23,7 @@ Number = Callable[[Ratios, Rows], Spread | None]
 
 
 def over(code: str, by: str = OWN) -> Number:
-    """Return a code's ratio to this code, or to its solver alone, in seconds.
-
-    It is a range of rounds or, in older records, a ratio of medians.
-    """
+    """Return a code's seconds over this code's, or its solver's: a range of rounds or, if old, of medians."""
 
     def number(ratios: Ratios, rows: Rows) -> Spread | None:
         if by == OWN:
@@ -56,8 +53,7 @@ TABLE: dict[str, Number] = {
 def newest(
     runs: Sequence[Mapping[str, Any]], codes: frozenset[str] = EVERY
 ) -> dict[tuple[str, int, int], tuple[Ratios, Rows]]:
-    """Return the ratios and rows by surface, grid and threads, of the last run in which all of the codes took
-    part."""
+    """Return ratios and rows by surface, grid and threads, of the last run in which all codes took part."""
     found: dict[tuple[str, int, int], tuple[Ratios, Rows]] = {}
     for run in runs:
         if {row["code"] for row in run["rows"]} >= codes:

@@ -57,14 +57,12 @@ class Turns:
 
 
 def error(found: Mapping[str, Any]) -> float:
-    """Return the residual for the target: the recomputed gap, or with coupling the certificate's worst
-    residual."""
+    """Return the residual for the target: recomputed gap, with coupling the certificate's worst one."""
     return float(found["gap"] if found["residual"] is None else found["residual"])
 
 
 def tuned_turns(name: str, kind: str, M: int, last: Turns | None, threads: int, limit: float) -> Turns:
-    """Return the code with a tolerance of its own that meets the target; or why it takes no part on this
-    grid.
+    """Return the code with a tolerance that meets the target; or why it takes no part on this grid.
 
     ``last`` are its turns on the next coarser grid: a peer's search goes on from their tolerance.
     """
@@ -91,10 +89,6 @@ def tuned(solve: Callable[[float], Found], start: float, *, loosen: bool) -> tup
     """Return the loosest tolerance, within a factor of two, whose error meets the target, and what it found.
 
     Without ``loosen`` the start is the loosest allowed. Raises `Failed` when no tolerance tried will do.
-
-    >>> def solve(tolerance): return {"gap": 3 * tolerance, "residual": None, "seconds": 1.0}
-    >>> 2 * tuned(solve, 1e-7, loosen=True)[0] >= TARGET / 3 >= tuned(solve, 1e-7, loosen=True)[0]
-    True
     """
     best: tuple[float, Found] | None = None
     too_loose, tolerance = math.inf, start

@@ -48,8 +48,7 @@ def row(turns: Turns) -> dict[str, object]:
 
 
 def ratios(turns: Sequence[Turns]) -> dict[str, object]:
-    """Return the ratio of every code's seconds to this code's on one problem, by rounds; and the least of the
-    peers'.
+    """Return each code's seconds over this code's on a problem, by rounds; and the least of the peers'.
 
     The least by the recommended set-ups, by any, over the solver alone, and over it in a process that has
     solved the same before. Processor seconds beside: they hear less of what else the machine does. Under
@@ -78,14 +77,12 @@ def _over(theirs: Sequence[Found], ours: Sequence[Found], clock: str) -> dict[st
 
 
 def _timed(clock: str, theirs: Sequence[Found], ours: Sequence[Found]) -> bool:
-    """Return True where both have a time by that clock in every round."""
     return bool(ours) and all(one[clock] is not None for one in (*theirs, *ours))
 
 
 def _fastest(
     name: str, peers: Mapping[str, Sequence[Found]], ours: Sequence[Found], clock: str
 ) -> dict[str, object]:
-    """Return the peer of the least median ratio, if any was timed by that clock."""
     timed = {code: rounds for code, rounds in peers.items() if _timed(clock, rounds, ours)}
     if not timed:
         return {}
@@ -95,8 +92,7 @@ def _fastest(
 
 
 def lines(rows: Sequence[Any], ratios: Sequence[Any]) -> list[list[str]]:
-    """Return the run as rows of text: problem, code, seconds, ratio to this code, gap, convolutions,
-    megabytes."""
+    """Return the run as rows of text: problem, code, seconds, ratio, gap, convolutions, megabytes."""
     over = {(r["kind"], r["M"], code): r[code] for r in ratios for code in r if isinstance(r[code], dict)}
     text = [["problem", "code", "seconds", "ratio to this code", "gap", "convolutions", "peak memory"]]
     for entry in rows:

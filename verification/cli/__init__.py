@@ -78,7 +78,6 @@ class _Version(argparse.Action):
     """Print the version, for which alone `refimpl` is imported: --help is quick."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        """Exit with status 0."""
         from refimpl import __version__
 
         parser.exit(0, f"{parser.prog} {__version__}\n")
@@ -105,8 +104,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def joined(arguments: Sequence[str]) -> list[str]:
-    """Return the arguments with negative numbers, and lists that begin with one, joined to the option before
-    them.
+    """Return the arguments with negative numbers, and lists from one on, joined to their option.
 
     By itself, argparse (Python 3.11) takes "-1e-6" and "-3,3" for options, and misses a value.
 

@@ -172,8 +172,7 @@ def _displacements(document: Mapping[str, Any], remark: str) -> str:
 
 
 def wedge(options: argparse.Namespace) -> int:
-    """Print the stresses at every pair of `--r` and `--theta-deg`, in units of the face pressure, tension
-    positive."""
+    """Print the stresses at each pair of `--r` and `--theta-deg`, over the pressure, tension positive."""
     import numpy as np
 
     from appendix_a.wedge import stresses
@@ -214,8 +213,7 @@ def _progress(total: int, text: str) -> Iterator[Callable[..., None]]:
 
 @contextmanager
 def _by_option(**other: tuple[str, object, str]) -> Iterator[None]:
-    """Make refusals of `appendix_a` name the option; ``other`` has name, value and what is allowed by
-    field."""
+    """Make refusals of `appendix_a` name the option; ``other``: name, value and bounds by field."""
     from appendix_a.errors import InputError
 
     try:

@@ -71,8 +71,7 @@ def look_up(options: argparse.Namespace) -> int:
 
 
 def element(options: argparse.Namespace) -> int:
-    """Print the percentage by which a square element's coefficients are off, the largest on crest, flank and
-    valley."""
+    """Print the largest errors of a square element's coefficients (percent) on crest, flank and valley."""
     from refimpl import Material
     from refimpl.half_space.influence_error_3d import element_error
 

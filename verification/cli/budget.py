@@ -15,8 +15,7 @@ if TYPE_CHECKING:
 
 
 def document(budgets: Budgets) -> dict[str, object]:
-    """Return SI units; half-widths of 95 %; infinity, where a part is unbounded, for the caller to make
-    null."""
+    """Return SI units, half-widths of 95 %; infinite where unbounded, for the caller to make null."""
     return {
         "tolerances": dict(budgets.tolerances),
         "numbers": {number: _parts(part) for number, part in budgets.numbers.items()},
@@ -27,8 +26,7 @@ def document(budgets: Budgets) -> dict[str, object]:
 
 
 def table(budgets: Budgets) -> str:
-    """Return the parts of each number in per cent of it, the number with all of them, and per cents that it
-    changes by for one of a parameter."""
+    """Return each number's parts in per cent of it, all of them, and the changes for one of a parameter."""
     header = ["", *(QUANTITIES[number].symbol for number in budgets.numbers)]
     numbers = list(budgets.numbers.values())
     widths: dict[str, list[float | None]] = {
@@ -75,8 +73,7 @@ def _in_words(budgets: Budgets) -> str:
 
 
 def _undetermined(budgets: Budgets) -> list[str]:
-    """Return the parameters with a tolerance whose derivative's bar is as long as itself, and would count in
-    the input part of mu."""
+    """Return toleranced parameters of derivatives unknown in sign that would count for mu."""
     number = "friction_coefficient_corrected"
     derivative, scatter = budgets.derivatives.derivatives[number], budgets.derivatives.scatter[number]
     least = 0.1 * budgets.numbers[number].input
@@ -109,7 +106,6 @@ def _share(part: Budget, width: float | None) -> str:
 
 
 def _relative(budgets: Budgets, number: str, name: str) -> str:
-    """Print the change with its 95 % half-width where that is a tenth of it or more."""
     found, answers = budgets.derivatives.found[number], budgets.derivatives
     if found == 0:
         return "-"

@@ -9,10 +9,7 @@ from verification.output.text_table import columns
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the folder; status 1 when a problem could not be certified (it is named, and not written).
-
-    Those of a kind that no proof covers are named too, and are no failure.
-    """
+    """Write the folder and name what is not certified; status 1 where a proof exists for its kind."""
     from verification.framework.threads import limited_to_one_thread
     from verification.output.files import Progress
     from verification.solver_suite import suite

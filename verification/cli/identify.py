@@ -149,7 +149,6 @@ def _scaled(name: str) -> tuple[str, float]:
 
 
 def _cells(interval: Interval, unit: float = 1.0) -> list[str]:
-    """Return the value and ends of an interval in a unit."""
     value, low, high = (f"{end / unit:.4g}" for end in (interval.value, interval.low, interval.high))
     return [value, f"{low} to {high}"]
 

@@ -24,10 +24,7 @@ FORMAT = "rough-friction identify 2"
 
 
 class SolveStore(UserDict[str, Mapping[str, Any]]):
-    """Responses by key, each with its checksum; the file is rewritten in one step after each solve.
-
-    Raises InputError for a file that is none of these, or is damaged.
-    """
+    """Responses by key with checksums, rewritten in one step; InputError for a damaged or other file."""
 
     def __init__(self, path: Path) -> None:
         super().__init__()

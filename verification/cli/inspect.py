@@ -93,8 +93,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _theories(found: Inspection, E: float, nu: float, load: float) -> tuple[list[dict[str, Any]], str]:
-    """Return what both theories have for the levelled map under a rigid flat, as plain values and as a
-    table."""
+    """Return both theories for the levelled map under a rigid flat, as plain values and a table."""
     from refimpl import Material
     from refimpl.solution.rough_contact import Roughness, estimates
 
@@ -148,7 +147,6 @@ def _shown(value: float, unit: str, deviation: float | None = None) -> str:
 
 
 def _length(value: float) -> str:
-    """Return a length at the scale of the object."""
     factor, unit = next(pair for pair in SCALES if abs(value) >= pair[0])
     return f"{value / (factor or 1e-12):.4g} {unit}"
 

@@ -20,21 +20,24 @@ if TYPE_CHECKING:
 EPILOG = """examples:
   rough-friction keys
   rough-friction keys length
+  rough-friction keys gaussian
 """
 
 HEAD = ("key", "unit", "default", "meaning", "also in")
 
 OPTIONS: Options = {
-    "word": option("keys with this word in them", metavar="WORD", nargs="?", default=""),
+    "word": option(
+        "keys with this word in them, or in the name of their table", metavar="WORD", nargs="?", default=""
+    ),
 }
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the keys; status 1 where none has the word."""
+    """Print the keys; status 1 where neither a key nor its table has the word."""
     check_outputs((), json=options.json)
     word = options.word.lower()
     found = {
-        title: [key for key in keys if word in f"{key.name} {key.meaning}".lower()]
+        title: [key for key in keys if word in f"{title} {key.name} {key.meaning}".lower()]
         for title, keys in _tables().items()
     }
     document = {title: [asdict(key) for key in keys] for title, keys in found.items() if keys}

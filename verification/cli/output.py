@@ -73,7 +73,6 @@ def check_workers(option: str, count: int) -> None:
 
 
 def _one_file(path: Path, other: Path) -> bool:
-    """Return whether both names lead to one file, or would; links and hard links do."""
     if os.path.realpath(path) == os.path.realpath(other):
         return True
     return os.path.isfile(path) and os.path.isfile(other) and os.path.samefile(path, other)
@@ -133,10 +132,7 @@ def show(text: str) -> None:
 
 
 class StatusLine:
-    """Progress on one line of stderr that is rewritten; nothing when stderr is no terminal.
-
-    At the end of a ``with`` block the line is cleared.
-    """
+    """Progress rewritten on one line of a terminal's stderr, which is cleared after the ``with`` block."""
 
     def __init__(self) -> None:
         self._shown, self._next = sys.stderr.isatty(), 0.0

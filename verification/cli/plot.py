@@ -60,8 +60,7 @@ def draw(solution: Solution, scene: Scene, path: Path) -> None:
 
 
 def hertz_of(scene: Scene, load: float) -> HertzSphere | None:
-    """Return the smooth, frictionless Hertz contact of a scene with a sphere; None for a scene without
-    one."""
+    """Return the smooth, frictionless Hertz contact of a scene with a sphere; None without one."""
     from refimpl.surfaces.shapes import Sphere
     from verification.exact import hertz
 
@@ -153,8 +152,7 @@ def legend_of(solution: Solution, hertz: HertzSphere | None) -> list[Patch | Lin
 
 
 def profile(axes: Axes, solution: Solution, view: View, hertz: HertzSphere | None, axis: int) -> None:
-    """Draw pressure, shear and, to the right, the gap on the line of elements through the peak, along one
-    axis."""
+    """Draw pressure, shear and, to the right, the gap along one axis through the peak."""
     import numpy as np
 
     grid = solution.grid
@@ -223,7 +221,6 @@ def gap_histogram(axes: Axes, solution: Solution, view: View) -> None:
 
 
 def _histogram(axes: Axes, values: NDArray[Any], top: float, count: int, colour: str) -> None:
-    """Draw the shares of ``count`` elements by value, up to ``top``; nothing without values."""
     import numpy as np
 
     if len(values):

@@ -104,12 +104,7 @@ def view_of(solution: Solution) -> View:
 
 
 def peak_of(pressure: Array) -> tuple[int, int]:
-    """Return the element of p_max; of equal ones, that nearest to the middle of the load.
-
-    >>> import numpy as np
-    >>> peak_of(np.array([[1.0, 0.0, 0.0, 1.0, 1.0, 1.0]]))
-    (0, 3)
-    """
+    """Return the element of p_max; of equal ones, that nearest to the middle of the load."""
     import numpy as np
 
     total = pressure.sum()
@@ -128,10 +123,6 @@ def pooled(field: NDArray[Any], *, lowest: bool = False, most: int = MOST_CELLS)
 
     There are at most ``most`` blocks along the longer side, so a picture of a fine grid has every contact,
     however small. The last blocks go on beyond the border.
-
-    >>> import numpy as np
-    >>> pooled(np.arange(6.0).reshape(2, 3), most=2)
-    (array([[4., 5.]]), 2)
     """
     import numpy as np
 
@@ -264,7 +255,6 @@ def _overlay(axes: Axes, where: Mask, view: View, colour: str) -> None:
 
 
 def _show(axes: Axes, picture: NDArray[Any], step: int, view: View, **options: Any) -> Any:
-    """Draw blocks of ``step`` elements over the window; the last ones go on beyond it."""
     left, right, bottom, top = view.extent
     dx, dy = view.edges(step)
     image = axes.imshow(
@@ -277,13 +267,11 @@ def _show(axes: Axes, picture: NDArray[Any], step: int, view: View, **options: A
 
 
 def _bar(axes: Axes, image: Any, title: str, extend: str = "neither") -> None:
-    """Draw a colour bar as tall as the map; its quantity and unit are the map's title."""
     axes.figure.colorbar(image, cax=axes.inset_axes((1.03, 0.0, 0.05, 1.0)), extend=extend)
     axes.set_title(title, loc="left")
 
 
 def _coloured(where: Mask, colour: str) -> Array:
-    """Return an image of the marked elements in one colour, transparent elsewhere."""
     import numpy as np
     from matplotlib.colors import to_rgb
 
@@ -293,7 +281,6 @@ def _coloured(where: Mask, colour: str) -> Array:
 
 
 def _arrow(axes: Axes, direction: float) -> None:
-    """Draw the direction in which the upper body slides, above the map's right end."""
     from matplotlib.text import OffsetFrom
 
     half = 9.0  # points, of the arrow's length

@@ -34,7 +34,6 @@ class Unit(NamedTuple):
 
 LENGTHS = (Unit("nm", 1e-9), Unit("µm", 1e-6), Unit("mm", 1e-3), Unit("m", 1.0))
 PRESSURES = (Unit("Pa", 1.0), Unit("kPa", 1e3), Unit("MPa", 1e6), Unit("GPa", 1e9))
-AREAS = (Unit("nm²", 1e-18), Unit("µm²", 1e-12), Unit("mm²", 1e-6), Unit("m²", 1.0))
 
 
 def unit_at_scale(value: float, units: tuple[Unit, ...]) -> Unit:

@@ -34,8 +34,7 @@ def draw_inspection(found: Inspection, path: Path) -> None:
 
 
 def draw_map(axes: Axes, found: Inspection) -> None:
-    """Draw the heights in nm over x, y in µm, as seen from outside the body; missing points are left
-    white."""
+    """Draw heights in nm over x, y in µm, as seen from outside the body; missing points are white."""
     import numpy as np
 
     lx, ly = (n * edge / MICRO for n, edge in zip(found.z.shape, found.pixel, strict=True))

@@ -79,8 +79,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def registered(solver: str | None) -> dict[str, dict[str, Any]]:
-    """Return the claim, metric, tolerance and tier of this version's cases; of a run of a solver, the suite's
-    too."""
+    """Return claim, metric, tolerance and tier of our cases; of a run of a solver, the suite's too."""
     from verification.framework.registry import load
     from verification.solver_suite import convergence, suite
 
@@ -94,10 +93,7 @@ def registered(solver: str | None) -> dict[str, dict[str, Any]]:
 
 
 def read_run(path: Path, option: str = "--results") -> Any:
-    """Return a result file of `verify`, checked; raises InputError, naming the option, for anything else.
-
-    A committed file may be a study's as well, which the exhibit that shows it checks.
-    """
+    """Return a checked result file of `verify`, or a study's; raises InputError, naming the option."""
     from reports.results import FORMAT, ResultFileError, check
 
     found = read_or_refuse(option, path)

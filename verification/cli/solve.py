@@ -47,7 +47,7 @@ EPILOG = """examples:
   rough-friction solve table1-smooth --accuracy 0.01 --explain
 
 exit status: 0 CONVERGED, or CYCLED: converged, with an alternating contact edge, certified too, and
-error bars include what that leaves open; 1 any other status, and with --strict a number that is not
+error bars include the alternation; 1 any other status, and with --strict a number that is not
 usable (its bar exceeds half of it, that of Q half of the tangential force); 2 bad input;
 130 interrupted, after the table of a refinement's last finished grid
 
@@ -109,7 +109,7 @@ OPTIONS: Options = {
     },
     "--slope-correction": option("exact tractions of oblique facets in Eq. (7)", action="store_true"),
     "--plastic": option(
-        "end pressures at the hardness, or never (default: the scene's own, or where they reach it)",
+        "cap pressures at the hardness, or never (default: the scene's own, or where they reach it)",
         metavar="on|off",
         type=on_or_off,
     ),
@@ -160,7 +160,6 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _read_scene(options: argparse.Namespace) -> Scene:
-    """Return the scene, after whatever can be refused before it is solved."""
     import refimpl
     from verification.cli.arrays import require_netcdf
 
@@ -177,7 +176,6 @@ def _read_scene(options: argparse.Namespace) -> Scene:
 
 
 def _explain(scene: Scene, options: argparse.Namespace, keywords: Mapping[str, Any]) -> int:
-    """Show what the scene requires, and what an accuracy will cost, without solving it."""
     from refimpl.driver.limits import Limits
     from refimpl.driver.options import Options
     from refimpl.driver.refined import forecast
@@ -238,7 +236,6 @@ def _with_budget(
 
 
 def _refuse_ignored(options: argparse.Namespace) -> None:
-    """Refuse an option that the others leave without a meaning, rather than ignore it."""
     if options.quantity is not None and options.accuracy is None:
         raise refusal("--quantity", options.quantity, "none without --accuracy, which it is about")
     for name in (*FILES, "budget", "strict") if options.explain else ():

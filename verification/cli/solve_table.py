@@ -35,8 +35,7 @@ def show_finished(interrupt: KeyboardInterrupt, scene: str) -> None:
 
 
 def document(solution: Solution, scene: str) -> dict[str, object]:
-    """Return the JSON of a solve: SI units and the names of `refimpl.Solution`; arrays are for the VTK
-    file."""
+    """Return the JSON of a solve: SI units, names of `refimpl.Solution`; arrays are for the VTK file."""
     from verification.output.provenance import provenance
 
     summary = {key: plain(value) for key, value in solution.summary().items()}

@@ -67,8 +67,7 @@ class Judged:
 
 
 def unseen_faults(results: Iterable[Result]) -> list[str]:
-    """Return the faults that no case that ran is meant to catch: a solver of few abilities is judged by few
-    cases."""
+    """Return the faults that no case that ran is meant to catch: few abilities, few cases."""
     from verification.solver_suite.check import Fault
     from verification.solver_suite.suite import suite
 
@@ -78,8 +77,7 @@ def unseen_faults(results: Iterable[Result]) -> list[str]:
 
 
 def likely_faults(results: Iterable[Result], most: int = 4) -> list[str]:
-    """Return the faults by the share of the cases that name them and fail, then by how many fail; the first
-    of them.
+    """Return the first faults by the share of the naming cases that fail, then by their number.
 
     A fault fails wherever it is named, so a case that names it and passes speaks against it.
     """
@@ -133,8 +131,7 @@ def text(name: str, judged: Judged) -> str:
 
 
 def table(name: str, judged: Judged) -> str:
-    """Return the verdicts, reasons of failure, what was not run and why, what no case looked for, and the
-    counts."""
+    """Return verdicts, reasons of failure, what was not run and why, what no case looked for, counts."""
     from verification.solver_suite import failures
 
     done = judged.run

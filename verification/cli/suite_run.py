@@ -209,7 +209,6 @@ def _timeout(options: argparse.Namespace) -> float:
 
 
 def _source(options: argparse.Namespace) -> tuple[str, Source, dict[str, Any]]:
-    """Name and source of the solver, and the abilities that are stated here: a program has no other."""
     from dataclasses import asdict, replace
 
     from verification.adapters import PUBLISHED

@@ -41,14 +41,13 @@ def run_entry(identity: Mapping[str, Any], suite: str, results: Iterable[Result]
 
 
 def published(path: Path = PUBLISHED) -> list[dict[str, Any]]:
-    """Return the entries of the published codes, without set-ups that are wrong on purpose; none without the
-    file."""
+    """Return the published codes' entries, without set-ups wrong on purpose; none without the file."""
     from verification.output.result_files import read_result
 
     if not path.is_file():
         return []
     document: Any = read_result(path)
-    suite = document.get("suite", {}).get("version", "unnumbered")
+    suite = document["suite"]["version"]
     metrics = {case["id"]: case["metric"] for case in document["cases"]}
     entries = [e for e in document["entrants"] if e["installed"] and e["role"] != "trap"]
     for entry in entries:
@@ -66,7 +65,6 @@ def text_of(suffix: str, entries: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _csv(entries: Sequence[Mapping[str, Any]]) -> str:
-    """Return a row for each code and case: all numbers."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(COLUMNS)

@@ -168,7 +168,6 @@ def check_plot(options: argparse.Namespace, study: Study) -> None:
 
 
 def _check_suffixes(**written: Path | None) -> None:
-    """Refuse a file whose name says that it is what another option writes."""
     for name, path in written.items():
         for other, suffix in SUFFIXES.items():
             if path is not None and other != name and path.suffix.lower() == suffix:
@@ -220,7 +219,6 @@ def _table(done: Sweep, store: Path) -> str:
 
 
 def _quality(rows: list[Row]) -> list[str]:
-    """Return the error bars against the scatter, and the warnings with their numbers of runs."""
     from verification.sweep.quality import quality_of, warnings_of
 
     table = [

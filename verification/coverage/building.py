@@ -15,10 +15,11 @@ from typing import Any
 import refimpl as rf
 from refimpl.accuracy.contact_edge import NO_FACES
 from refimpl.accuracy.grid_features import GridFeatures
+from refimpl.accuracy.peak import Peak
 from refimpl.errors import InputError
+from refimpl.grid.straight_edges import StraightEdges
 from refimpl.model.materials import Pair
 from verification.coverage.class_scenes import CLASSES, GRIDS, scene
-from verification.coverage.store import features_of
 from verification.coverage.textures import RoundedPunch
 from verification.output.files import Progress, appending
 from verification.output.provenance import provenance
@@ -47,6 +48,16 @@ class Solved:
     seed: int
     grids: tuple[GridFeatures, ...]
     exact: Mapping[str, float]
+
+
+def features_of(record: dict[str, Any]) -> GridFeatures:
+    """Return the features that `dataclasses.asdict` made plain."""
+    peaks = {name: Peak(**record[name]) for name in ("peak", "first_contact")}
+    straight = {name: StraightEdges(**record[name]) for name in ("straight", "plastic_straight")}
+    tuples = {name: tuple(record[name]) for name in ("faces", "highest_areas")}
+    grid = record["grid"]
+    restored = rf.Grid(tuple(grid["shape"]), tuple(grid["lengths"]), grid["periodic"])
+    return GridFeatures(**{**record, **peaks, **straight, **tuples, "grid": restored})
 
 
 def exact_numbers(one: rf.Scene) -> dict[str, float]:
@@ -90,7 +101,6 @@ def _solved(kind: str, seed: int) -> dict[str, Any]:
 
 
 def _records(path: Path) -> Iterator[dict[str, Any]]:
-    """Yield the lines of a file; one cut short by a kill is skipped."""
     if not path.exists():
         return
     for line in path.read_text(encoding="utf-8").splitlines():
@@ -111,10 +121,7 @@ def solved(path: Path) -> list[Solved]:
 
 
 def pack(scenes: Iterable[Solved], path: Path) -> None:
-    """Write scenes as the result file that is committed: features in columns, as short as errors allow.
-
-    Of more than three grids every second one is kept, and the reference.
-    """
+    """Write scenes as the committed file: features in columns, every second grid of more than three."""
     rows = []
     for one in scenes:
         kept = one.grids if len(one.grids) <= _KEPT else (*one.grids[one.seed % 2 : -1 : 2], one.grids[-1])
@@ -148,8 +155,7 @@ _DIGITS = {"numbers": 6, "first_contact": 5, "peak": 5, "faces": 5}
 
 
 def _plain(grid: GridFeatures) -> dict[str, Any]:
-    """Return the features as short plain values: shares of faces to 0.01, parts of error bars summed but for
-    waves'."""
+    """Return short plain values: shares of faces to 0.01, parts of error bars summed but for waves'."""
     record = asdict(grid)
     record["highest_areas"] = ()
     record["faces"] = [[k, round(n, 2)] for k, n in enumerate(grid.faces) if n >= 0.005]
@@ -172,7 +178,6 @@ def as_corrected(features: GridFeatures) -> GridFeatures:
 
 
 def _short(value: Any, digits: int) -> Any:
-    """Return the value with its numbers rounded to significant digits."""
     if isinstance(value, Mapping):
         return {name: _short(one, digits) for name, one in value.items()}
     if isinstance(value, list | tuple):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -78,12 +79,7 @@ def _grooves(draw: _Draw, *, zigzag: bool = False) -> rf.Surface:
     return Wave(RMS, (0, number) if along_y else (number, 0), phase, zigzag)
 
 
-def _facets(draw: _Draw) -> rf.Surface:
-    return _grooves(draw, zigzag=True)
-
-
 def _strips(draw: _Draw) -> rf.Surface:
-    """Return grooves along a direction of small whole numbers on a square."""
     draw.size = (SIDE, SIDE)
     m, n = ((1, 1), (1, 2), (2, 1), (1, 3), (2, 3), (3, 2))[draw.rng.integers(6)]
     number = int(draw.rng.integers(1, 3))
@@ -100,7 +96,6 @@ def _cut_off(draw: _Draw) -> rf.Surface:
 
 
 def _few_elements(draw: _Draw) -> rf.Surface:
-    """Return a smooth ball whose contact is a few elements wide."""
     draw.periodic, draw.ball, draw.radii = False, True, (0.02, 0.06)
     return rf.Flat()
 
@@ -164,20 +159,7 @@ def _profile(draw: _Draw, shape: str) -> rf.Surface:
     return Profile(shape, height, (m * number, n * number), float(draw.rng.random()), top, wall)
 
 
-def _steps(draw: _Draw) -> rf.Surface:
-    return _profile(draw, "steps")
-
-
-def _teeth(draw: _Draw) -> rf.Surface:
-    return _profile(draw, "teeth")
-
-
-def _ridges(draw: _Draw) -> rf.Surface:
-    return _profile(draw, "ridges")
-
-
 def _both_rough(draw: _Draw) -> rf.Surface:
-    """Return roughness of Eq. (9), self-affine roughness or grooves on either body."""
     laws: list[Kind] = [_isotropic, _self_affine, _oblique, _grooves]
     lower, upper = (laws[k] for k in draw.rng.permutation(len(laws))[:2])
     surface: rf.Surface = lower(draw)
@@ -204,14 +186,12 @@ def _short_waves(draw: _Draw) -> rf.Surface:
 
 
 def _mostly_contact(draw: _Draw) -> rf.Surface:
-    """Return rough planes of which 60 to 95 % are in contact."""
     draw.periodic, draw.ball, draw.pressed_share = True, False, (0.9, 2.2)
     return _isotropic(draw)
 
 
 def _rounded_punch(draw: _Draw) -> rf.Surface:
-    """Return a punch with a rounded rim between like bodies, of which contact radius and pressure are
-    known."""
+    """Return a rounded punch between like bodies, of known contact radius and pressure."""
     draw.size, draw.periodic, draw.upper = (SIDE, SIDE), False, draw.lower
     draw.modulus = Pair(lower=draw.lower, upper=draw.lower).reduced_modulus
     a = SIDE * draw.log(0.08, 0.3)
@@ -230,7 +210,7 @@ CLASSES: dict[str, Kind] = {
     "grooves": _grooves,
     "self-affine": _self_affine,
     "capped": _isotropic,
-    "facets": _facets,
+    "facets": partial(_grooves, zigzag=True),
     "strips between the axes": _strips,
     "few asperities": _few_asperities,
     "cut off by the border": _cut_off,
@@ -240,14 +220,14 @@ CLASSES: dict[str, Kind] = {
     "ball on data": _data,
     "rounded punches": _rounded_punch,
     "dimpled flats": _dimples,
-    "steps": _steps,
-    "saw teeth": _teeth,
+    "steps": partial(_profile, shape="steps"),
+    "saw teeth": partial(_profile, shape="teeth"),
     "pads": _pads,
     "both bodies rough": _both_rough,
     "short waves": _short_waves,
     "60 to 95 % contact": _mostly_contact,
     "capped dimples": _dimples,
-    "ridges": _ridges,
+    "ridges": partial(_profile, shape="ridges"),
 }
 
 

@@ -20,7 +20,6 @@ from refimpl.accuracy.discretisation_error import estimates
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.accuracy.refinement import uncertainty
 from verification.coverage.building import Solved
-from verification.coverage.judge import EDGE_SIZE_BOUND
 
 NUMBERS = (
     "friction_coefficient_corrected",
@@ -32,6 +31,8 @@ NUMBERS = (
     "approach",
 )
 LEVEL = 0.92
+EDGE_SIZE_BOUND = 0.12
+"""Of the edge, that a reference without its mean excess is open by: three standard deviations."""
 
 
 def rows(scenes: Iterable[Solved]) -> list[dict[str, Any]]:
@@ -152,4 +153,3 @@ def lines(table: Sequence[dict[str, Any]]) -> list[list[str]]:
         ["" if row[name] is None else format(row[name], digits) for name, (_, digits) in shown.items()]
         for row in names
     ]
-

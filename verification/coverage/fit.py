@@ -60,13 +60,11 @@ def _area_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row |
 
 
 def _rest_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row | None:
-    """Return the error of mu without tau's share."""
     off = _rest(grid) - _rest(reference)
     return off, np.zeros(0), _squares(rest_sizes, grid, reference)
 
 
 def _transverse_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row | None:
-    """Return the error of Q over the load."""
     if grid.rms_slope == 0:
         return None
     squares = _squares(rest_sizes, grid, reference)
@@ -76,8 +74,7 @@ def _transverse_row(grid: GridFeatures, reference: GridFeatures, one: Solved) ->
 
 
 def _peak_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row | None:
-    """Return the error of the parabola's peak, over it; none where the hardness caps it or nothing bounds
-    it."""
+    """Return the relative error of the parabola's peak; none at the hardness or without bound."""
     if grid.yields or not (grid.peak.smooth and reference.peak.smooth):
         return None
     height = reference.peak.height
@@ -95,7 +92,6 @@ def _peak_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row |
 
 
 def _approach_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row | None:
-    """Return the error of the approach from first contact, over the depth."""
     depth = reference.depth
     squares = _squares(approach_sizes, grid, reference) / depth**2
     if not np.isfinite(squares).all():
@@ -105,7 +101,6 @@ def _approach_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> R
 
 
 def _plastic_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row | None:
-    """Return the error of the area at the hardness, in elements."""
     if grid.unfilled is None or not grid.yields:
         return None
     dA = grid.grid.element_area
@@ -204,7 +199,6 @@ def constant(value: float | Array, error: float | Array | None, found: Fitted) -
 
 
 def _rounded(values: Array) -> Any:
-    """Return the plain numbers with three significant digits."""
     return np.vectorize(lambda x: float(f"{x:.3g}"))(values).tolist()
 
 

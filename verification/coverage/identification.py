@@ -117,7 +117,6 @@ def _over_noise(table: SyntheticTable, found: Identification) -> dict[str, float
 
 
 def _identified(tables: TableSet, table: SyntheticTable) -> Identification:
-    """Return the fit of a table without a first guess of friction."""
     return identify(
         without_friction(table.scene),
         table.rows,
@@ -184,10 +183,7 @@ def summary(tables: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
 def study(
     tables: TableSet, log: Path | None = None, seeds: Iterable[int] | None = None
 ) -> list[dict[str, object]]:
-    """Return the fits of all seeds, or of others; one without a converged solve holds its message.
-
-    ``log`` keeps finished fits, a line each: the study goes on where it was.
-    """
+    """Return fits of all seeds, or others, or the message of one without a solve; ``log`` keeps them."""
     seeds = list(tables.seeds if seeds is None else seeds)
     lines = log.read_text(encoding="utf-8").splitlines() if log and log.exists() else []
     found = [json.loads(each) for each in lines]

@@ -78,7 +78,6 @@ def _fit(
 
 
 def _hessian(loss: Callable[[Array], tuple[float, Array]], x: Array) -> Array:
-    """Return the second derivatives by central differences of the gradient."""
     step = 1e-4
     rows = np.array([(loss(x + step * e)[1] - loss(x - step * e)[1]) / (2 * step) for e in np.eye(len(x))])
     symmetric: Array = 0.5 * (rows + rows.T)

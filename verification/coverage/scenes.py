@@ -25,11 +25,7 @@ class Drawn:
 
 
 def random_scene(seed: int) -> Drawn:
-    """Return the scene of a seed; the classes take turns.
-
-    >>> random_scene(3).kind, random_scene(3).scene.load == random_scene(3).scene.load
-    ('rough ball', True)
-    """
+    """Return the scene of a seed; the classes take turns."""
     kinds = tuple(CLASSES)
     kind = kinds[seed % len(kinds)]
     return Drawn(seed, kind, CLASSES[kind](_Dice(seed)))
@@ -83,8 +79,7 @@ def _smooth(dice: _Dice) -> rf.Scene:
 
 
 def _barrel(dice: _Dice) -> rf.Scene:
-    """Draw a contact elongated up to ten to one: nearly a cylinder, without the ends that Eq. (7) leaves
-    singular."""
+    """Draw a contact up to ten to one: nearly a cylinder, without the ends singular by Eq. (7)."""
     ball, ratio = dice.ball(), dice.log(1.5, 10)
     root = math.sqrt(ratio)
     shape = Barrel(ball.R / root, ball.R * root)

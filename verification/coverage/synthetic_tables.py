@@ -86,11 +86,7 @@ class _Draw(Dice):
     def table(
         self, kind: str, scene: rf.Scene, span: float, count: int, noise: float, most: float, grid: int
     ) -> SyntheticTable:
-        """Return friction at loads from the scene's over ``span`` up to it, and at a new one up to ``most``
-        of it.
-
-        Noise is normal, of a relative standard deviation.
-        """
+        """Return friction, with normal relative noise, at loads over ``span`` and one up to ``most``."""
         loads = map(float, np.geomspace(scene.load / span, scene.load, count))
         new_load = scene.load * self.log(1 / span, most)
         rows, deviates = [], []
@@ -211,10 +207,7 @@ def ensemble_table(seed: int) -> SyntheticTable:
 
 
 def true_friction(scene: rf.Scene, load: float) -> float:
-    """Return the corrected mu, extrapolated from `TRUE_GRIDS`.
-
-    Raises ArithmeticError where a solve does not converge.
-    """
+    """Return the corrected mu, extrapolated from `TRUE_GRIDS`. ArithmeticError where one is unsolved."""
     features = []
     for grid in TRUE_GRIDS:
         solution = rf.solve(replace(scene, load=load), grid)

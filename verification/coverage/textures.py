@@ -15,10 +15,7 @@ from refimpl.grid import Array
 
 @dataclass(frozen=True)
 class RoundedPunch(rf.Surface):
-    """A flat of radius b within a rim of curvature 1/R: ``-(r - b)^2 / (2 R)`` for r > b (m).
-
-    ``centre`` is counted from the domain's middle (m).
-    """
+    """A flat of radius b, rim ``-(r - b)^2 / (2 R)`` for r > b; ``centre`` from the domain's middle (m)."""
 
     b: float
     R: float

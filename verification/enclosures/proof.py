@@ -78,8 +78,7 @@ class _Balls:
         return Proof(self.contact, pressures, separations, approach, self._forces(pressures))
 
     def _solution(self) -> tuple[list[Ball], Ball]:
-        """Return the rows: Eq. (6) times K on each element of the set; then the load, or the approach
-        itself."""
+        """Return the rows: Eq. (6) times K on the set's elements; then the load, or the approach."""
         known, n = self.known, len(self.inside)
         matrix, right = self.flint.arb_mat(n + 1, n + 1), self.flint.arb_mat(n + 1, 1)
         for row, element in enumerate(self.inside):
@@ -131,7 +130,6 @@ class _Balls:
         return self.number(float(self.known.tan_x[element])), self.number(float(self.known.tan_y[element]))
 
     def _cosines(self, element: tuple[int, int]) -> tuple[Ball, Ball, Ball]:
-        """Return cos theta_x, cos theta_y and their product."""
         cos_x, cos_y = (1 / (1 + t * t).sqrt() for t in self._tangents(element))
         return cos_x, cos_y, cos_x * cos_y
 
@@ -139,7 +137,6 @@ class _Balls:
         return self.number(float(self.known.heights.max())) - self.number(float(self.known.heights[element]))
 
     def _by_tau(self, element: tuple[int, int]) -> Ball:
-        """Return the displacement by tau on the contact set."""
         total = self.number(0)
         if self.known.friction.tau:
             for source in self.inside:
@@ -192,8 +189,7 @@ class _Balls:
         }
 
     def _periodic_table(self) -> dict[str, list[list[Ball]]]:
-        """Return the sums of the modes ``2 pi/q`` and ``-2 pi i q_x/q^2``; no mean, no sine at the Nyquist
-        frequency."""
+        """Return sums of the modes ``2 pi/q``, ``-2 pi i q_x/q^2``; no mean, no Nyquist sine."""
         M = self.known.M
         number, scale = self.number, self.number(SIDE) / M**2
         turn = [2 * number(k) / M for k in range(M)]

@@ -15,6 +15,7 @@ from refimpl.grid import Array
 from refimpl.planning.plan import Method
 
 SIDE = 2.0**-10
+QUANTUM = 2.0**-40  # m
 STEEL, COPPER, POLYMER = rf.Material(200e9, 0.30), rf.Material(118e9, 0.30), rf.Material(2.5e9, 0.38)
 SLIDING = rf.Friction(tau=0.8e6, beta=0.15)
 NONE = rf.Friction()
@@ -69,18 +70,17 @@ class EnclosedScene:
         return rf.solve(self.scene, self.M, method=method, tolerance=tolerance, **terms)
 
 
-def surface(M: int, seed: int, rms: float, radius: float | None = None, quantum: float = 2.0**-40) -> Array:
-    """Return white heights of this rms (m) on a bump of this radius (m), in multiples of ``quantum``."""
+def surface(M: int, seed: int, rms: float, radius: float | None = None) -> Array:
+    """Return white heights of this rms (m) on a bump of this radius (m), in multiples of `QUANTUM`."""
     z = rms * np.random.default_rng(seed).standard_normal((M, M))
     if radius is not None:
         x = ((np.arange(M) + 0.5) / M - 0.5) * SIDE
         z -= (x[:, None] ** 2 + x[None, :] ** 2) / (2 * radius)
-    return np.asarray(np.rint(z / quantum) * quantum)
+    return np.asarray(np.rint(z / QUANTUM) * QUANTUM)
 
 
 def scenes() -> tuple[EnclosedScene, ...]:
-    """Return all but the near ties and the oblique one, which take a proven or a solved scene to start
-    from."""
+    """Return all but the near ties and the oblique one, which start from a proven or a solved scene."""
     return (
         EnclosedScene("smooth", "a smooth bump without friction", surface(9, 0, 0.0, 0.2), load=12.0),
         EnclosedScene("rough", "a rough bump on identical metal", surface(12, 1, 0.1e-6, 0.3),
@@ -115,8 +115,7 @@ def oblique_scene() -> EnclosedScene:
 
 
 def near_tie(base: EnclosedScene, name: str, element: tuple[int, int], rise: float) -> EnclosedScene:
-    """Return ``base`` with one element raised by about ``rise`` (m), so that it just does, or does not,
-    touch."""
+    """Return ``base`` with one element raised by about ``rise`` (m): it just does, or not, touch."""
     quantum = 2.0**-60
     heights = base.heights.copy()
     heights[element] += np.rint(rise / quantum) * quantum

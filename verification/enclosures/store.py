@@ -97,8 +97,7 @@ def write(known: EnclosedScene, proof: Proof, folder: Path) -> Path:
 
 @cache
 def stored() -> tuple[Enclosure, ...]:
-    """Return all enclosed scenes that ship with the package, by name. Raises FileNotFoundError without
-    any."""
+    """Return all enclosed scenes of the package, by name. Raises FileNotFoundError without any."""
     folder = resources.files("verification.enclosures")
     files = sorted((file for file in folder.iterdir() if file.name.endswith(".json")), key=lambda f: f.name)
     if not files:
@@ -165,8 +164,7 @@ def _scene(content: Mapping[str, Any]) -> EnclosedScene:
 
 
 def _margins(proof: Proof) -> dict[str, float | None]:
-    """Return the smallest pressure over the peak and w over the approach (None in full contact), proven
-    positive."""
+    """Return the least pressure over the peak and w over the approach (None: full contact), proven."""
     pressures = [float(ball) for ball in proof.pressures]
     separations = [float(ball) for ball in proof.separations]
     return {
@@ -183,8 +181,7 @@ def _drawn(contact: Mask) -> list[str]:
 
 
 def relative(value: float, exact: Enclosed, scale: float) -> float:
-    """Return the largest distance of ``value`` from the enclosure over ``scale``; exact agreement of zeros is
-    0.
+    """Return the largest distance of ``value`` from the enclosure over ``scale``; 0 of equal zeros.
 
     >>> relative(1.5, Enclosed(1.0, 0.25), 1.0)
     0.75

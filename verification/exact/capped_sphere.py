@@ -39,12 +39,7 @@ class Capped:
 
 
 def disc_displacement(r: Array, radius: Array) -> Array:
-    """Return the displacement (m) at ``r`` (m) by unit pressure on a circle of the given ``radius`` (m),
-    times E*.
-
-    >>> float(disc_displacement(np.array([0.0]), np.array([1.0]))[0])   # 2 p a / E* at the centre
-    2.0
-    """
+    """Return E* times the displacement at ``r`` (m) by unit pressure on a circle of ``radius`` (m)."""
     r, radius = np.broadcast_arrays(r, radius)
     m = np.minimum(r, radius) / np.maximum(r, radius)
     E = ellipe(m**2)
@@ -85,8 +80,7 @@ def capped_sphere(sphere: Sphere, hardness: float, rings: int = 800) -> Capped:
 
 
 def plastic_limit(sphere: Sphere, hardness: float) -> tuple[float, float]:
-    """Return the radius and approach (m) where all of the contact is at the hardness: a uniformly loaded
-    circle.
+    """Return radius and approach (m) where all contact is at the hardness: a circle of even load.
 
     ``a = sqrt(P / (pi H))``, and ``d = a^2 / 2R + 4 H a / (pi E*)`` at its edge.
     """
@@ -97,8 +91,7 @@ def plastic_limit(sphere: Sphere, hardness: float) -> tuple[float, float]:
 def _balanced(
     compliance: Array, gap: Array, area: Array, load: float, pressure: Array, free: NDArray[np.bool_]
 ) -> tuple[Array, float]:
-    """Return the pressures with those of the free rings, and the approach, from contact there and the load's
-    balance."""
+    """Return the pressures with the free rings' from contact and load, and the approach."""
     k = np.flatnonzero(free)
     scale = float(np.abs(compliance).max())
     n = len(k)
@@ -113,8 +106,7 @@ def _balanced(
 
 
 def _edge(r: Array, pressure: Array, h: float) -> float:
-    """Return the radius at which the square of the pressure extrapolates to zero, if that is near the
-    outermost ring."""
+    """Return the radius where the squared pressure extrapolates to zero, if near the outermost ring."""
     last = np.flatnonzero(pressure > 0)
     return _zero(r, pressure**2, last[-_FITTED:], float(r[last[-1]] + h / 2), h)
 

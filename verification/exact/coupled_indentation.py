@@ -59,9 +59,7 @@ class CoupledHertz:
         return np.asarray(self.c0 * x * (force / rho2) / a**2)
 
     def gap(self, x: ArrayLike, y: ArrayLike) -> Array:
-        """Return the gap (m) whose exact sliding state this is: (x^2 + y^2)/2R minus the coupling
-        displacement; not shifted.
-        """
+        """Return the gap (m) of this exact sliding state: (x^2 + y^2)/2R less coupling; not shifted."""
         r2 = np.asarray(x, dtype=float) ** 2 + np.asarray(y, dtype=float) ** 2
         return np.asarray(r2 / (2 * self.hertz.radius) - self.coupling_displacement(x, y))
 
@@ -72,8 +70,7 @@ class CoupledHertz:
 
 
 def _carried(rho2: Array) -> Array:
-    """Return the share of the Hertz load within r: 1 - (1 - rho^2)^(3/2), without cancellation near the
-    axis."""
+    """Return the share of the Hertz load within r, 1 - (1 - rho^2)^(3/2), stable near the axis."""
     root = np.sqrt(1 - rho2)
     return np.asarray(rho2 * (1 + root + root**2) / (1 + root))
 
@@ -88,9 +85,7 @@ class ShearedSphere:
 
     @property
     def shift(self) -> float:
-        """Centre of the contact along x (m): negative, to the trailing side, for a hard sphere on a softer
-        flat.
-        """
+        """Centre of the contact along x (m): negative, trailing, for a hard sphere on a softer flat."""
         return -np.pi * self.c0 * self.tau * self.hertz.radius
 
     @property
@@ -110,8 +105,7 @@ class ShearedSphere:
 
 
 def first_order_shift(hertz: Sphere, c0: float, tau: float, beta: float) -> float:
-    """Return the centroid of the pressure along x (m) under ``r = tau + beta p``, to first order in ``c0``
-    (1/Pa).
+    """Return the pressure's centroid along x (m) under ``r = tau + beta p``, to order ``c0`` (1/Pa).
 
     The coupling displacement of the Hertz state, c0 x Q(r)/r^2, changes the pressure's moment by minus the
     work of a tilted punch's pressure, (2 E*/pi) x (a^2 - r^2)^(-1/2) per unit tilt, on it (Betti):
@@ -123,8 +117,7 @@ def first_order_shift(hertz: Sphere, c0: float, tau: float, beta: float) -> floa
 
 
 def coupling_by_quadrature(state: CoupledHertz, x: float, y: float) -> tuple[float, float]:
-    """Return the coupling displacement (m) at ``(x, y)`` (m) inside the contact and the quadrature's error
-    (m), from the kernel s/rho^2.
+    """Return the coupling displacement (m) at ``(x, y)`` (m) in contact by s/rho^2, and its error.
 
     In polar coordinates about the field point the source lies at (x - rho cos w, y - rho sin w), so s/rho^2
     rho = cos w; the traction along each ray has an elementary integral, of which the Hertz part is half an

@@ -12,8 +12,7 @@ from refimpl.kernels import normal_integral, tangential_integral
 
 
 class DenseInfluence:
-    """The matrices of Eq. (7), of as many rows and columns as elements; element ``i My + j`` at row and
-    column.
+    """The square matrices of Eq. (7), element ``i My + j`` at row and column.
 
     >>> operator = DenseInfluence(Grid.square(1.0, 3), direction=0.0)
     >>> bool(np.all(operator.shear_matrix == -operator.shear_matrix.T))    # c is odd
@@ -60,8 +59,7 @@ class DenseInfluence:
         return pairs
 
     def _integrated(self, angle: float | None) -> Array:
-        """Return the integrals over an element at all offsets ``0 ... n - 1, 1 - n ... -1`` along both axes
-        (m)."""
+        """Return an element's integrals at offsets ``0 ... n - 1, 1 - n ... -1`` along both axes (m)."""
         (n, m), (dx, dy) = self.grid.shape, self.grid.spacings
         x, y = (np.r_[0:n, 1 - n : 0] * dx)[:, None], (np.r_[0:m, 1 - m : 0] * dy)[None, :]
         if angle is None:
@@ -70,8 +68,7 @@ class DenseInfluence:
         return math.cos(angle) * along_x + math.sin(angle) * along_y
 
     def _transformed(self, angle: float | None) -> Array:
-        """Return the sums of the modes ``2 pi/q`` or ``-2 pi i q_s/q^2`` without the mean, at offsets from 0
-        (m)."""
+        """Return sums of the modes ``2 pi/q`` or ``-2 pi i q_s/q^2``, no mean, at offsets from 0 (m)."""
         axes = zip(self.grid.shape, self.grid.spacings, strict=True)
         q_x, q_y = np.meshgrid(*(2 * np.pi * np.fft.fftfreq(*axis) for axis in axes), indexing="ij")
         squared = q_x**2 + q_y**2

@@ -72,8 +72,7 @@ def _mode(p: int, r: int, turn: tuple[Exact, Exact], M: int, what: str) -> Exact
 
 
 def difference(M: int, axis: int, periodic: bool) -> Exact:
-    """Return the matrix of the central differences per element along an axis, one-sided at the border or
-    wrapped."""
+    """Return the matrix of central differences per element, one-sided at the border or wrapped."""
     matrix = np.full((M * M, M * M), mp.mpf(0), dtype=object)
     for i, j in np.ndindex(M, M):
         k = (i, j)[axis]

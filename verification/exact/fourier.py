@@ -70,9 +70,7 @@ class FullContact:
 def symbol_at(
     qx: ArrayLike, qy: ArrayLike, modulus: float, slip: float = 0.0, direction: float = 0.0
 ) -> Complex:
-    """Return A(q) (m/Pa) at wave vectors (1/m), broadcast; ``slip`` is d beta; the mean, q = 0, is given 0
-    (no rigid motion).
-    """
+    """Return A(q) (m/Pa) at wave vectors (1/m), broadcast; ``slip`` is d beta; 0 at q = 0, the mean."""
     qx, qy = np.asarray(qx, dtype=float), np.asarray(qy, dtype=float)
     q = np.hypot(qx, qy)
     along = np.cos(direction) * qx + np.sin(direction) * qy

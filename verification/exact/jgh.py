@@ -52,9 +52,7 @@ def nearly_full_area(load_ratio: ArrayLike) -> Array:
 
 
 def _cell(n: int) -> tuple[Array, Array]:
-    """Return the gap/Delta from first contact, and the symbol sqrt(2)/|(i, j)| that takes p/p* to a mean-free
-    u/Delta; ``(n, n)`` each.
-    """
+    """Return gap/Delta from first contact, and sqrt(2)/|(i, j)|, which takes p/p* to a mean-free u/Delta."""
     x = (np.arange(n) + 0.5) / n * np.pi
     i = np.arange(n)
     wave = np.hypot(i[:, None], i[None, :])
@@ -67,8 +65,7 @@ def _displacement(symbol: Array, p: Array) -> Array:
 
 
 def relax(load_ratio: float, n: int, *, tolerance: float = 1e-9, limit: int = 4000) -> Array:
-    """Return the pressure over p* on ``n x n`` points of the quarter cell 0 < x, y < lambda/2, mean
-    ``load_ratio``; shape ``(n, n)``.
+    """Return p/p* ``(n, n)`` on the quarter cell 0 < x, y < lambda/2, of mean ``load_ratio``.
 
     Conjugate gradients on the contact set, exact symbol 2/(E* q) by cosine transform. Converged when the
     complementarity gap, mean of p (w - min w), is below ``tolerance`` times the elastic scale p* Delta;
@@ -97,8 +94,7 @@ def relax(load_ratio: float, n: int, *, tolerance: float = 1e-9, limit: int = 40
 
 
 def extrapolated(load_ratio: float, sizes: Sequence[int]) -> tuple[float, float, float]:
-    """Return the contact fraction, its standard error, and approach/Delta of the mean planes, in the limit of
-    fine grids.
+    """Return the fine grids' contact fraction, its standard error, and mean planes' approach/Delta.
 
     The contact of n x n points counts elements cut by the edge as whole, order 1 in 1/n with scatter n^(-3/2)
     from how the edge falls on the points: a line in 1/n over many sizes, weighted by that scatter. The
@@ -120,6 +116,5 @@ def extrapolated(load_ratio: float, sizes: Sequence[int]) -> tuple[float, float,
 
 
 def _approach(p: Array) -> float:
-    """Return the pressure-weighted mean of u + gap over Delta, the gap counted from first contact."""
     shape, symbol = _cell(len(p))
     return float(np.sum(p * (_displacement(symbol, p) + shape)) / np.sum(p))

@@ -46,8 +46,7 @@ def _random_offset(rng: np.random.Generator) -> float:
 
 
 def awkward_points() -> Iterator[Point]:
-    """Yield centre, axes, edges, corners and close to them, diagonals, far ends; square and extreme
-    aspects."""
+    """Yield centre, axes, edges, corners, points close to them, diagonals, far ends; extreme aspects."""
     below, above = np.nextafter(0.5, 0), np.nextafter(0.5, 1)
     offsets = (0.0, 1e-100, 1e-8, 0.24999, 0.25, 0.4999, below, 0.5, above, 0.5001,
                1.0, 2.5, 10.0, 1e3, FARTHEST)  # fmt: skip

@@ -29,8 +29,7 @@ CORNERS = ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))
 
 
 def normal(x: float, y: float, dx: float, dy: float) -> Any:
-    """Return the integral of 1/rho to 50 digits (an mpf); arguments as in
-    ``refimpl.kernels.normal_integral``.
+    """Return I[1/rho] to 50 digits (an mpf); arguments of ``refimpl.kernels.normal_integral``.
 
     >>> with mp.workdps(DIGITS):
     ...     mp.almosteq(normal(0.0, 0.0, 1.0, 1.0), 4 * mp.asinh(1))
@@ -40,8 +39,7 @@ def normal(x: float, y: float, dx: float, dy: float) -> Any:
 
 
 def tangential(x: float, y: float, dx: float, dy: float) -> Any:
-    """Return the integral of s/rho^2 to 50 digits (an mpf); arguments as in
-    ``refimpl.kernels.tangential_integral``."""
+    """Return I[s/rho^2] to 50 digits (an mpf); as ``refimpl.kernels.tangential_integral``."""
     return mp.mpf(0) if x == 0 else _corner_sum(_cerruti, x, y, dx, dy)
 
 
@@ -76,8 +74,7 @@ def normal_by_transform(x: float, y: float, dx: float, dy: float, digits: int = 
 
 
 def tangential_by_transform(x: float, y: float, dx: float, dy: float, digits: int = 20) -> Any:
-    """Return the integral of s/rho^2, for ``x > 0``, from exponentials and an error function; digits as
-    above."""
+    """Return I[s/rho^2], ``x > 0``, by exponentials and an error function; 50 digits."""
 
     def integrand(u: Any) -> Any:
         near = mp.mpf(x) - mp.mpf(dx) / 2
@@ -167,8 +164,7 @@ def _enclose(corner: Corner, x: float, y: float, dx: float, dy: float) -> Any:
 
 
 def relative_error(value: float, exact: Any) -> float:
-    """Return ``|value - exact| / |exact|`` in the reference's precision; where 0 is exact nothing else will
-    do."""
+    """Return ``|value - exact| / |exact|`` in the reference's precision; an exact 0 is met exactly."""
     if exact == 0:
         return 0.0 if value == 0 else np.inf
     with mp.workdps(DIGITS):
@@ -176,8 +172,7 @@ def relative_error(value: float, exact: Any) -> float:
 
 
 def relative_distance(value: float, ball: Any) -> float:
-    """Return the upper bound on the relative error of ``value``, whatever point of the ball is the exact
-    one."""
+    """Return the upper bound on the relative error of ``value`` over the points of the ball."""
     flint = arb()
     with flint.ctx.workprec(256):
         error = abs((flint.arb(value) - ball) / ball)

@@ -1,8 +1,9 @@
-"""Lawful states counted by brute force: every contact set of a tiny grid is tried, without a contact solver.
+"""Lawful states by brute force or integer programming: over all contact sets, without a contact solver.
 
 A contact set S is lawful when the pressure that solves the linear equations on it, with tau acting on S and
-nowhere else, is positive on S and leaves no penetration outside. Slopes are neglected. With tau = 0 there is
-exactly one (`verification.stress_tests.positive_definite`); with tau there may be none, one or several.
+nowhere else, is positive on S and leaves no penetration outside. Slopes are neglected, and bodies are
+half-spaces. With tau = 0 there is
+exactly one (`positive_definite`); with tau there may be none, one or several.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import Bounds, LinearConstraint, milp
 
 import refimpl as rf
 from refimpl.grid import Array
@@ -25,6 +27,7 @@ TAUS = (0.0, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
 SCENES = 40
 MEAN_PRESSURE = 2e6
 SIDE = 1e-3
+_INFEASIBLE = 2  # status of `scipy.optimize.milp`
 
 
 class Count(NamedTuple):
@@ -56,18 +59,54 @@ def scene(seed: int, tau: float, *, soft_below: bool = True) -> rf.Scene:
 
 def lawful_states(scene: rf.Scene) -> list[NDArray[np.bool_]]:
     """Return all lawful contact sets, each as ``(M, M)``."""
-    grid, pair = scene.grid(M), scene.materials
-    a = pair.normal_compliance * normal_matrix(grid)
-    c = pair.shear_compliance * shear_matrix(grid, scene.sliding_direction)
-    lower, upper = scene.heights(grid)
-    h = (upper - lower - (upper - lower).min()).ravel()
-    target = scene.load / grid.element_area
+    a, c, h, target = _equations(scene, M)
     found = []
     for code in range(1, 2 ** (M * M)):
         inside = np.array([bool(code >> k & 1) for k in range(M * M)])
         if _is_lawful(a + scene.friction.beta * c, scene.friction.tau * (c @ inside), h, target, inside):
             found.append(inside.reshape(M, M))
     return found
+
+
+def none_is_lawful(scene: rf.Scene, elements: int, seconds: float = 120.0) -> bool:
+    """Return whether integer programming proves that no contact set is lawful; False where it is not decided.
+
+    Shares f of the load on elements, contact s of 0 or 1, and the approach d obey sum f = 1, 0 <= f <= s and
+    0 <= G f + tau c s + h - d <= room (1 - s); no gap of a state exceeds twice its largest displacement, the
+    room. The program's tolerance of 1e-6 makes its set larger: what it proves empty is empty.
+    """
+    a, c, h, target = _equations(scene, elements)
+    n, G = len(h), (a + scene.friction.beta * c) * target
+    length = np.abs(G).max()
+    G, shear, h = G / length, scene.friction.tau * c / length, h / length
+    room = 2 * float((np.abs(G).max(axis=1) + np.abs(shear).sum(axis=1) + h).max())
+    one, unit, contact = np.ones((n, 1)), np.eye(n), np.arange(2 * n + 1) // n == 1
+    constraints = [
+        LinearConstraint(np.hstack([G, shear, -one]), -h, np.inf),
+        LinearConstraint(np.hstack([G, shear + room * unit, -one]), -np.inf, room - h),
+        LinearConstraint(np.hstack([unit, -unit, 0 * one]), -np.inf, 0.0),
+        LinearConstraint(np.arange(2 * n + 1)[None] < n, 1.0, 1.0),
+    ]
+    least, most = np.zeros(2 * n + 1), np.ones(2 * n + 1)
+    least[-1], most[-1] = -room, room
+    found = milp(
+        np.zeros(2 * n + 1),
+        constraints=constraints,
+        integrality=contact,
+        bounds=Bounds(least, most),
+        options={"time_limit": seconds},
+    )
+    return bool(found.status == _INFEASIBLE)
+
+
+def _equations(scene: rf.Scene, elements: int) -> tuple[Array, Array, Array, float]:
+    """Return the matrices of a and c, the gap from first contact, and the sum of pressures."""
+    grid, pair = scene.grid(elements), scene.materials
+    a = pair.normal_compliance * normal_matrix(grid)
+    c = pair.shear_compliance * shear_matrix(grid, scene.sliding_direction)
+    lower, upper = scene.heights(grid)
+    gap = (upper - lower).ravel()
+    return a, c, gap - gap.min(), scene.load / grid.element_area
 
 
 def _is_lawful(G: Array, shear: Array, h: Array, target: float, inside: NDArray[np.bool_]) -> bool:
@@ -84,8 +123,7 @@ def _is_lawful(G: Array, shear: Array, h: Array, target: float, inside: NDArray[
 
 
 def count(tau: float, scenes: int = SCENES) -> Count:
-    """Count the lawful states of seeded scenes at one tau, and whether the solvers' good states are among
-    them."""
+    """Count lawful states of seeded scenes at one tau, and whether good states are among them."""
     numbers, wrong = list[int](), 0
     statuses: dict[str, dict[str, int]] = {method: {} for method in SOLVERS}
     for seed in range(scenes):

@@ -48,10 +48,7 @@ class Manufactured:
 def manufacture(
     M: int, seed: int, angle: float, oblique: bool, slope_correction: bool, hardness: float | None = None
 ) -> Manufactured:
-    """Return a random state on ``M x M`` elements sliding at ``angle`` (rad); slopes only if ``oblique``.
-
-    ``hardness`` is that of the lower body (Pa).
-    """
+    """Return a random state sliding at ``angle`` (rad); slopes if ``oblique``, lower ``hardness`` (Pa)."""
     random = np.random.default_rng(seed)
     touching = random.random((M, M)) < 0.4
     f = np.where(touching, PEAK * random.uniform(0.01, 1.0, (M, M)), 0.0)

@@ -24,13 +24,7 @@ corners.
 
 @dataclass(frozen=True)
 class Patch:
-    """``pressure`` (Pa) on ``width`` (along x) by ``height`` (m) centred at the origin, reduced ``modulus``
-    E* (Pa).
-
-    >>> unit = Patch(pressure=1.0, width=2.0, height=2.0, modulus=1.0)
-    >>> bool(np.isclose(unit.displacement(0, 0), 8 / np.pi * np.log(1 + np.sqrt(2)), rtol=1e-14))
-    True
-    """
+    """``pressure`` (Pa) on ``width`` (along x) by ``height`` (m) about the origin, ``modulus`` E* (Pa)."""
 
     pressure: float
     width: float
@@ -45,9 +39,7 @@ class Patch:
 
     @property
     def mean_displacement(self) -> float:
-        """Displacement averaged over the patch itself (m): the closed double integral of 1/rho over a
-        rectangle pair.
-        """
+        """Displacement averaged over the patch (m): closed double integral of 1/rho."""
         a, b = self.width, self.height
         diagonal = np.hypot(a, b)
         pair = 2 * a * b * (a * np.arcsinh(b / a) + b * np.arcsinh(a / b))

@@ -22,9 +22,7 @@ UNCERTAINTY = 1e-13
 
 @dataclass(frozen=True)
 class PowerLaw:
-    """Indenter ``coefficient`` * r^``exponent`` (coefficient in m^(1-n)), ``load`` (N), reduced ``modulus``
-    E* (Pa).
-    """
+    """Indenter ``coefficient`` * r^``exponent`` (m^(1-n)), ``load`` (N), reduced ``modulus`` E* (Pa)."""
 
     load: float
     coefficient: float
@@ -60,25 +58,10 @@ class PowerLaw:
         shape = np.sqrt(1 - rho2) * hyp2f1(1 - n / 2, 1, 1.5, 1 - rho2)
         return np.asarray(self.modulus * self._kappa * self.coefficient * n * a ** (n - 1) / np.pi * shape)
 
-    @property
-    def area_exponent(self) -> float:
-        """Area grows as load to this power: 2/(n + 1); doubling the load multiplies the area by 2 to it.
-
-        >>> PowerLaw(1.0, 1.0, 1.0, 1.0).area_exponent      # cone: area proportional to load
-        1.0
-        """
-        return 2 / (self.exponent + 1)
-
 
 @dataclass(frozen=True)
 class Cone:
-    """Rigid cone of surface ``slope`` (m/m), ``load`` (N), reduced ``modulus`` E* (Pa): Sneddon's own closed
-    forms.
-
-    >>> cone = Cone(load=1.0, slope=0.1, modulus=1e9)
-    >>> cone.mean_pressure == cone.modulus * cone.slope / 2
-    True
-    """
+    """Rigid cone of surface ``slope`` (m/m), ``load`` (N), ``modulus`` E* (Pa): Sneddon's closed forms."""
 
     load: float
     slope: float

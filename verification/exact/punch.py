@@ -25,7 +25,6 @@ from appendix_a.fem3d.patch import normal_integral
 
 Array = NDArray[np.float64]
 
-UNCERTAINTY_CIRCLE = 1e-15
 UNIT_SQUARE_CAPACITANCE = 0.3667880
 """Over 4 pi eps0 and per unit side: our own value (n = 16, 32, 64 of `square_capacitance`, extrapolated)."""
 PUBLISHED_CAPACITANCE = 0.3667874
@@ -35,12 +34,7 @@ UNCERTAINTY_SQUARE = 2e-6
 
 @dataclass(frozen=True)
 class CircularPunch:
-    """Flat end of ``radius`` a (m) under ``load`` (N), reduced ``modulus`` E* (Pa).
-
-    >>> punch = CircularPunch(load=3.0, radius=1.0, modulus=1.0)
-    >>> punch.approach, float(punch.displacement(0.5)), float(punch.displacement(1e6) * 1e6 * np.pi)
-    (1.5, 1.5, 3.0000000000...)
-    """
+    """Flat end of ``radius`` a (m) under ``load`` (N), reduced ``modulus`` E* (Pa)."""
 
     load: float
     radius: float
@@ -52,17 +46,14 @@ class CircularPunch:
         return self.load / (2 * self.radius * self.modulus)
 
     def pressure(self, r: ArrayLike) -> Array:
-        """Return p (Pa) at ``r`` (m): P/(2 pi a^2) (1 - r^2/a^2)^(-1/2) inside, zero outside; infinite at the
-        edge itself.
-        """
+        """Return p (Pa) at ``r`` (m): P/(2 pi a^2) (1 - r^2/a^2)^(-1/2) inside, 0 outside, infinite at a."""
         inside = 1 - (np.asarray(r, dtype=float) / self.radius) ** 2
         safe = np.where(inside > 0, inside, 1.0)
         peak = self.load / (2 * np.pi * self.radius**2)
         return np.where(inside > 0, peak / np.sqrt(safe), np.where(inside == 0, np.inf, 0.0))
 
     def displacement(self, r: ArrayLike) -> Array:
-        """Return the normal displacement (m): delta inside, (2 delta/pi) arcsin(a/r) outside, Johnson
-        (3.38)."""
+        """Return the normal displacement (m): delta, outside (2 delta/pi) arcsin(a/r), Johnson (3.38)."""
         outer = np.maximum(1.0, np.asarray(r, dtype=float) / self.radius)
         return 2 * self.approach / np.pi * np.arcsin(1 / outer)
 
@@ -77,8 +68,7 @@ def square_stiffness(side: float, modulus: float, capacitance: float = UNIT_SQUA
 
 
 def square_capacitance(n: int, grading: float = 4.0) -> float:
-    """Return our own C: piecewise-constant collocation on ``n`` elements per half side, graded towards edges
-    and corners.
+    """Return our own C: piecewise-constant collocation on ``n`` graded elements per half side.
 
     Quarter plate 0 < x, y < 1, nodes ``1 - (1 - i/n)^grading``, symmetric about both axes and the diagonal.
     """
@@ -89,9 +79,7 @@ def square_capacitance(n: int, grading: float = 4.0) -> float:
 
 @dataclass(frozen=True)
 class _Plate:
-    """Elements of one eighth of the plate |x|, |y| < 1: centres, half-sizes, and ``area`` with all their
-    mirror images.
-    """
+    """An eighth of the plate |x|, |y| < 1: centres, half-sizes, and ``area`` with mirror images."""
 
     x: Array
     y: Array
@@ -108,8 +96,7 @@ class _Plate:
         return cls(middle[i], middle[j], half[i], half[j], 4 * half[i] * half[j] * images)
 
     def potential(self, x: Array, y: Array) -> Array:
-        """Return the integral of 1/rho over each element with its images (columns), seen from points ``x, y``
-        (rows)."""
+        """Return I[1/rho] of elements with their images (columns), seen from points ``x, y`` (rows)."""
         x, y = x[:, None], y[:, None]
         off_diagonal = self.x != self.y
         total = np.zeros((len(x), len(self.x)))
@@ -122,8 +109,7 @@ class _Plate:
 
 
 def _rectangle(x: Array, y: Array, a: Array, b: Array) -> Array:
-    """Return the integral of 1/rho over a 2a by 2b rectangle centred at the origin, seen from (x, y);
-    broadcast.
+    """Return I[1/rho] of a 2a by 2b rectangle about the origin, seen from (x, y); broadcast.
 
     From afar the corner sum cancels (thin elements lose all digits), so there the multipole series takes
     over: relative error (size/distance)^4 * 7/640 < 2e-8 beyond 30 half-sizes, on entries that are themselves

@@ -83,8 +83,7 @@ class RationalBump:
         return self._cauchy(t) - self.c * complex(real, imag) / (t - pole)
 
     def displacement(self, x: float, nu: float) -> complex:
-        """Return u_x + i u_y of the boundary point at abscissa x, up to a constant; units of pressure length
-        / E."""
+        """Return u_x + i u_y of the boundary at abscissa x, up to a constant; pressure length / E."""
         kappa, shear = 3.0 - 4.0 * nu, 0.5 / (1.0 + nu)
         t = self.parameter(x)
         pressed = self.map(min(max(t, self.t1), self.t2)) - self.map(self.t1)
@@ -96,8 +95,7 @@ class RationalBump:
         return np.array([self.displacement(float(value), nu).imag - centre for value in x])
 
     def _cauchy(self, t: float) -> complex:
-        """Return (1 / 2 pi i) times the integral of w'(s) ln(s - t) over the strip, from above the
-        boundary."""
+        """Return (1 / 2 pi i) times the integral of w'(s) ln(s - t) over the strip, from above."""
         cut = min(max(t, self.t1), self.t2)
 
         def part(component: str, lower: float, upper: float) -> float:
@@ -119,8 +117,7 @@ class RationalBump:
         return (complex(real, imag) - 1j * np.pi * passed) / (2j * np.pi)
 
     def _cauchy_slope(self, zeta: complex) -> complex:
-        """Return -(1 / 2 pi i) times the integral of w'(s) / (s - zeta) over the strip, zeta inside the
-        body."""
+        """Return -(1 / 2 pi i) times the integral of w'(s) / (s - zeta) over the strip, zeta inside."""
         nodes, weights = np.polynomial.legendre.leggauss(60)  # to rounding: zeta is b away from the strip
         s = (self.t1 + self.t2) / 2 + (self.t2 - self.t1) / 2 * nodes
         values = np.array([self.slope_of_map(float(v)) / (v - zeta) for v in s])

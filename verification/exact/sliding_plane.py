@@ -49,13 +49,7 @@ def dundurs(lower: tuple[float, float], upper: tuple[float, float]) -> tuple[flo
 
 @dataclass(frozen=True)
 class SlidingCylinder:
-    """``line_load`` (N/m), ``radius`` R (m), ``modulus`` E* (Pa), ``coupling`` d, friction ``tau`` (Pa) and
-    ``beta``.
-
-    >>> still = SlidingCylinder(line_load=1e5, radius=0.1, modulus=1e11, coupling=0.0, tau=0.0, beta=0.3)
-    >>> bool(np.isclose(still.half_width, np.sqrt(4 * 1e5 * 0.1 / (np.pi * 1e11)), rtol=1e-14))
-    True
-    """
+    """``line_load`` (N/m), ``radius`` R (m), ``modulus`` E* (Pa), ``coupling`` d, ``tau`` (Pa), ``beta``."""
 
     line_load: float
     radius: float

@@ -37,10 +37,6 @@ UNCERTAINTY = 1e-12
 class SlidingWave:
     """``mean_pressure`` (Pa), wave ``amplitude``, ``wavelength`` (m), ``modulus`` E* (Pa), ``coupling`` d,
     ``tau``, ``beta``.
-
-    >>> still = SlidingWave(0.5, 1 / np.pi, 1.0, 1.0, coupling=0.0, tau=0.0, beta=0.2)    # p = p*/2
-    >>> [round(float(edge), 12) for edge in still.edges]
-    [-0.25, 0.25]
     """
 
     mean_pressure: float

@@ -16,14 +16,12 @@ from refimpl.grid import Array, Grid
 
 
 def normal(x: Array, y: Array, dx: float, dy: float) -> Array:
-    """Return ``I[1/rho]`` of a ``dx`` by ``dy`` element, seen from ``(x, y)`` (m); not on its edges'
-    lines."""
+    """Return ``I[1/rho]`` of a ``dx`` by ``dy`` element, seen from ``(x, y)`` (m); not on edge lines."""
     return _corners(lambda X, Y: X * np.arcsinh(Y / np.abs(X)) + Y * np.arcsinh(X / np.abs(Y)), x, y, dx, dy)
 
 
 def tangential(x: Array, y: Array, dx: float, dy: float) -> Array:
-    """Return ``I[x/rho^2]`` of a ``dx`` by ``dy`` element, seen from ``(x, y)`` (m); not on its edges'
-    lines."""
+    """Return ``I[x/rho^2]`` of a ``dx`` by ``dy`` element, seen from ``(x, y)`` (m); not on edge lines."""
     return _corners(lambda X, Y: Y * np.log(X * X + Y * Y) / 2 + X * np.arctan(Y / X), x, y, dx, dy)
 
 
@@ -38,14 +36,12 @@ def shear_matrix(grid: Grid, direction: float) -> Array:
 
 
 def normal_offsets(shape: tuple[int, int], edges: tuple[float, float] = (1.0, 1.0)) -> Array:
-    """Return ``I[1/rho]`` of an element of those edges at offsets ``1 - M ... M - 1`` elements along x and
-    y."""
+    """Return ``I[1/rho]`` of an element at offsets ``1 - M ... M - 1`` elements along x and y."""
     return normal(*_offsets(shape, edges), *edges)
 
 
 def shear_offsets(shape: tuple[int, int], direction: float, edges: tuple[float, float] = (1.0, 1.0)) -> Array:
-    """Return ``I[s/rho^2]`` of an element of those edges at offsets ``1 - M ... M - 1`` elements along x and
-    y."""
+    """Return ``I[s/rho^2]`` of an element at offsets ``1 - M ... M - 1`` elements along x and y."""
     return _along(direction, *_offsets(shape, edges), *edges)
 
 
@@ -59,7 +55,6 @@ def _offsets(shape: tuple[int, int], edges: tuple[float, float]) -> tuple[Array,
 
 
 def _pairs(grid: Grid) -> tuple[Array, Array]:
-    """Return the offsets along x and y between all element centres, field by row."""
     x, y = (axis.ravel() for axis in np.meshgrid(grid.x, grid.y, indexing="ij"))
     return x[:, None] - x[None, :], y[:, None] - y[None, :]
 

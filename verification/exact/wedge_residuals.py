@@ -24,18 +24,13 @@ CIRCLE = 64
 
 
 def derivative_weights(n: int) -> Real:
-    """Return the weights w_1..w_n of the central difference ``sum w_k (f(k s) - f(-k s)) / s`` of order
-    2n."""
+    """Return w_1..w_n of the difference ``sum w_k (f(k s) - f(-k s)) / s`` of order 2n."""
     ratios = [factorial(n) ** 2 / (k * factorial(n - k) * factorial(n + k)) for k in range(1, n + 1)]
     return np.array([(-1) ** k * ratio for k, ratio in enumerate(ratios)])
 
 
 def residuals(r: float, theta: float, gamma: float) -> tuple[float, float]:
-    """Return (r |div sigma|, |mean - centre| of sigma_r + sigma_theta), both over the point's largest
-    component.
-
-    The stencil stays inside the wedge: its step is limited by the faces as well as by the load's ends.
-    """
+    """Return (r |div sigma|, |mean - centre| of sigma_r + sigma_theta) over the largest, inside the wedge."""
     alpha, log_r = np.pi / 2 - gamma, np.log(r)
     to_face = alpha - abs(theta)
     to_end = np.hypot(log_r, to_face)

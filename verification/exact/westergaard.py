@@ -24,14 +24,7 @@ UNCERTAINTY = 1e-14
 
 @dataclass(frozen=True)
 class Wave:
-    """``mean_pressure`` (Pa) on a wave of ``amplitude`` Delta and ``wavelength`` lambda (m), ``modulus`` E*
-    (Pa).
-
-    >>> full = np.pi * 1e9 * 1e-6 / 1e-3
-    >>> half = Wave(mean_pressure=full / 2, amplitude=1e-6, wavelength=1e-3, modulus=1e9)
-    >>> round(half.contact_fraction, 12), round(half.full_contact_pressure / full, 12)
-    (0.5, 1.0)
-    """
+    """``mean_pressure`` (Pa), ``amplitude`` Delta and ``wavelength`` lambda (m), ``modulus`` E* (Pa)."""
 
     mean_pressure: float
     amplitude: float
@@ -58,9 +51,7 @@ class Wave:
 
     @property
     def approach(self) -> float:
-        """Approach of the mean planes from first contact (m): Delta s^2 (1 - ln s^2) up to full contact, then
-        constant.
-        """
+        """Approach of mean planes from first contact (m): Delta s^2 (1 - ln s^2), then constant."""
         return float(self.amplitude * self._sin2 * (1 - np.log(self._sin2)))
 
     def pressure(self, x: ArrayLike) -> Array:
@@ -73,8 +64,7 @@ class Wave:
 
 
 def displacement_by_quadrature(wave: Wave, x: float) -> tuple[float, float]:
-    """Return the mean-free displacement (m) of ``wave``'s pressure at ``x`` (m) and the quadrature's error
-    (m); partial contact.
+    """Return ``wave``'s mean-free displacement at ``x`` and its error (m); partial contact.
 
     The line load's periodic kernel -(2/(pi E*)) ln|2 sin(pi s/lambda)|, written anew in mpmath from the
     pressure formula.

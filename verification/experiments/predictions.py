@@ -35,10 +35,7 @@ def scene_and_tolerances(name: str) -> tuple[rf.Scene, dict[str, float]]:
 
 
 def press(scene: rf.Scene, load: float) -> rf.Solution:
-    """Solve a ball on a flat under a load (N), in a domain that fits its contact.
-
-    Raises RuntimeError where the solve does not converge.
-    """
+    """Solve a ball on a flat under a load (N) in a fitting domain; RuntimeError if it does not converge."""
     radius = parameters(scene)["upper.surface[0].radius"]
     hertz = Sphere(load, radius, Pair(scene.lower.material, scene.upper.material).reduced_modulus)
     found = rf.solve(replace(scene, load=load, side=ROOM * hertz.contact_radius), GRID)

@@ -242,9 +242,6 @@ def jsonable(item: object) -> object:
 
     A map is a list of lists with at least `MAP_SIZE` numbers.
     Raises TypeError for anything that is not a number, a text, a mapping or a series of such.
-
-    >>> jsonable({"x": np.array([1 / 3, np.nan])})
-    {'x': [0.333333, None]}
     """
     return _jsonable(item, SERIES_DIGITS)
 
@@ -289,7 +286,6 @@ def _finite(name: str, number: Any) -> float:
 
 
 def _place(failure: BaseException) -> str:
-    """Return the file name and line where it was raised; no directories, so results do not depend on the
-    machine."""
+    """Return file name and line where it was raised; no directories, which differ by machine."""
     frames = traceback.extract_tb(failure.__traceback__)
     return f"{frames[-1].filename.rsplit('/', 1)[-1]}:{frames[-1].lineno}" if frames else "no traceback"

@@ -22,13 +22,7 @@ class Order:
 
 
 def fit_order(spacing: Sequence[float], error: Sequence[float]) -> Order:
-    """Order of `error` (positive, one per grid) in `spacing`, from coarse to fine.
-
-    Raises ValueError for fewer than three grids, spacings that do not fall, or errors not finite and > 0.
-
-    >>> round(fit_order([0.4, 0.2, 0.1], [16.0, 4.0, 1.0]).order, 12)
-    2.0
-    """
+    """Order of `error` in `spacing`, coarse to fine; ValueError below 3 grids, or if not falling and > 0."""
     h, e = np.asarray(spacing, dtype=float), np.asarray(error, dtype=float)
     if h.ndim != 1 or h.shape != e.shape or len(h) < 3:
         raise ValueError("an order needs at least three grids, and one number for each")

@@ -110,10 +110,7 @@ def _imported_anew(old: Case, new: Case) -> bool:
 
 
 def load(package: str = CASES_PACKAGE) -> tuple[Case, ...]:
-    """Return all cases declared below `package`, by module and line, whatever was imported before.
-
-    A module that cannot be imported stops the run: its cases would otherwise be missing without a word.
-    """
+    """Return all cases below `package`, by module and line; a module that does not import stops the run."""
     root = importlib.import_module(package)
     for module in pkgutil.walk_packages(root.__path__, prefix=f"{package}."):
         importlib.import_module(module.name)
@@ -122,11 +119,7 @@ def load(package: str = CASES_PACKAGE) -> tuple[Case, ...]:
 
 
 def select(cases: Iterable[Case], tier: Tier, globs: Iterable[str] = ()) -> tuple[Case, ...]:
-    """Return the cases of a tier whose id matches any of `globs` (all, when there are none); order kept.
-
-    Raises LookupError when nothing is left, or when one of the globs matches no case: an empty selection must
-    not look like a run without failures.
-    """
+    """Return a tier's cases by `globs` (or all), in order. LookupError where one, or all, match none."""
     patterns = tuple(globs)
     in_tier = [c for c in cases if tier is Tier.FULL or c.tier is Tier.QUICK]
     chosen = tuple(c for c in in_tier if not patterns or any(fnmatchcase(c.id, p) for p in patterns))

@@ -72,7 +72,6 @@ def run(
 
 
 def errata(results: Iterable[Result]) -> list[dict[str, object]]:
-    """Return the errata that the results hold evidence for: a case is about one when its data has all of
-    ERRATUM."""
+    """Return the errata with evidence: a case is about one when its data has all of ERRATUM."""
     about = [r for r in results if set(ERRATUM) <= set(r.data)]
     return [{"case": r.id, "status": r.status, **{name: r.data[name] for name in ERRATUM}} for r in about]

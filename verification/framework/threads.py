@@ -38,8 +38,7 @@ def one_thread() -> Iterator[None]:
 
 @contextmanager
 def limited_to_one_thread() -> Iterator[None]:
-    """Limit this process to one thread in the block, whatever its environment was when libraries were
-    imported.
+    """Limit this process to one thread in the block, whatever its environment was at import.
 
     BLAS is limited by its own interface; transforms read the environment at every call. Raises RuntimeError
     where a library of BLAS or OpenMP does not take the limit.

@@ -24,14 +24,12 @@ def judged(
     *,
     data: Mapping[str, object],
     reference: float | None = None,
-    reference_uncertainty: float = 0.0,
     unit: str = "",
 ) -> Measured:
     """Return a measurement with its verdict in ``data["verdict"]``, and the sentence as its note."""
     return Measured(
         value=value,
         reference=reference,
-        reference_uncertainty=reference_uncertainty,
         unit=unit,
         data={"verdict": verdict.value, **data},
         note=sentence,

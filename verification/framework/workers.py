@@ -75,7 +75,6 @@ def run_all(cases: Sequence[Case], jobs: int, tick: Callable[[Result], None]) ->
 
 
 def _drain(lines: queue.SimpleQueue[list[Case]], stopped: threading.Event) -> Iterator[Case]:
-    """Yield the cases, line after line, until no line is left or the event is set."""
     while True:
         try:
             line = lines.get_nowait()

@@ -20,8 +20,7 @@ _SHOWN = 40  # characters of the name of a target in that of its temporary file
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Yield a temporary path beside `path`, of the same suffix, that takes its place when the block ends
-    well.
+    """Yield a temporary path beside `path`, of its suffix, to take its place when the block ends well.
 
     The file appears in one step; after an error the old file, if any, is still there. What is no regular
     file, a device or a pipe, is never replaced: the finished file is copied to it. Nor is a link replaced,
@@ -88,8 +87,7 @@ def write_text(text: str, path: Path) -> None:
 
 @contextmanager
 def appending(path: Path) -> Iterator[TextIO]:
-    """Yield a file of lines, open for more of them; a last one that was cut short by a kill is ended
-    first."""
+    """Yield a file of lines, open for more; a last one cut short by a kill is ended first."""
     cut = path.exists() and not path.read_bytes().endswith(b"\n")
     with path.open("a", encoding="utf-8") as lines:
         if cut:

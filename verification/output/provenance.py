@@ -30,8 +30,7 @@ def or_none(ask: Callable[[], T]) -> T | None:
 
 
 def versions() -> dict[str, str | None]:
-    """Return the version of Python, of this package and of each dependency; None for one that is not
-    found."""
+    """Return the version of Python, of this package and each dependency; None for one not found."""
     from refimpl import __version__  # here and not above: --help is quick
 
     found: dict[str, str | None] = {"python": platform.python_version(), DISTRIBUTION: __version__}
@@ -41,11 +40,7 @@ def versions() -> dict[str, str | None]:
 
 
 def revision() -> dict[str, str | bool | None]:
-    """Return the checkout's commit and whether its tree is `dirty`; `commit` is None for an installed
-    package.
-
-    Only a checkout that this file is part of counts, not whatever repository lies around an environment.
-    """
+    """Return this file's checkout's commit and whether it is `dirty`; `commit` is None if installed."""
     if not _is_checkout() or _git(ROOT, "rev-parse", "--show-prefix") != "":
         return {"commit": None, "dirty": None}
     changes = _git(ROOT, "status", "--porcelain")
@@ -56,10 +51,7 @@ def revision() -> dict[str, str | bool | None]:
 
 
 def is_known(commit: str) -> bool:
-    """Return whether the checkout has the commit; True where that cannot be found out.
-
-    An installed package has no history, and a shallow clone not all of it.
-    """
+    """Return whether the checkout has the commit; True where unknown: if installed, or a shallow clone."""
     if not _is_checkout() or _git(ROOT, "rev-parse", "--is-shallow-repository") != "false":
         return True
     named = re.fullmatch("[0-9a-f]{7,64}", commit)  # no option of git's
@@ -78,11 +70,7 @@ def machine() -> dict[str, str | int | None]:
 
 
 def command() -> str:
-    """Return the command line as it could be typed again: `python -m MODULE`, or a program without its
-    directory.
-
-    Of absolute paths only the names are kept: they are this machine's.
-    """
+    """Return the command line to be typed again: `python -m MODULE`, or names instead of absolute paths."""
     arguments = [Path(word).name if Path(word).is_absolute() else word for word in sys.argv[1:]]
     module = sys.modules["__main__"].__spec__  # None of scripts, such as pip's for an entry point
     if module is None:
@@ -107,8 +95,7 @@ def _is_checkout() -> bool:
 
 
 def _git(root: Path, *arguments: str) -> str | None:
-    """Return the output of a git command, which leaves no lock behind; None when there is no git or no
-    repository."""
+    """Return the output of a git command without a lock; None without git or a repository."""
     try:
         asked = ["git", "--no-optional-locks", "-C", str(root), *arguments]
         done = subprocess.run(asked, capture_output=True, encoding="utf-8", errors="replace", check=True)

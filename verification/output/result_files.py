@@ -27,10 +27,7 @@ MOST_BYTES = 50_000_000
 
 
 def read_result(path: Path) -> Any:
-    """Return the document of a result file, plain or compressed, whatever its name.
-
-    Raises OSError for a file that cannot be read, and ValueError for one that is damaged or not JSON.
-    """
+    """Return the document, plain or compressed. Raises OSError, or ValueError if damaged or not JSON."""
     with path.open("rb") as file:
         content = file.read(MOST_BYTES + 1)  # a device has no end
     if len(content) > MOST_BYTES:
@@ -41,10 +38,7 @@ def read_result(path: Path) -> Any:
 
 
 def parsed(text: str) -> Any:
-    """Return the document of a JSON text from anywhere.
-
-    Raises ValueError for what is not JSON, NaN and infinity included, and for an object with a key twice.
-    """
+    """Return the document of a JSON text. Raises ValueError for no JSON, NaN, infinity or a key twice."""
     return json.loads(text, parse_constant=_refuse, object_pairs_hook=_once)
 
 
@@ -71,7 +65,6 @@ def _decompressed(content: bytes) -> bytes:
 
 
 def _refuse(constant: str) -> float:
-    """Raise ValueError for NaN and infinity, which Python's reader accepts."""
     raise ValueError(f"{constant} is not JSON")
 
 
@@ -81,10 +74,7 @@ def committed(name: str) -> Any:
 
 
 def result_paths(folder: Path) -> list[Path]:
-    """Return the result files of a folder, plain and compressed.
-
-    Raises ValueError where a name has both forms: which one is meant?
-    """
+    """Return the result files of a folder. Raises ValueError for a name both plain and compressed."""
     paths = sorted([*folder.glob("*.json"), *folder.glob(f"*{SUFFIX}")])
     names = [name_of(path) for path in paths]
     twice = next((name for name in names if names.count(name) > 1), None)
@@ -108,10 +98,7 @@ def read_results(folder: Path) -> dict[str, Any]:
 
 
 def encoded(document: object, path: Path) -> bytes:
-    """Return the content of a result file at the path: JSON, compressed where the path ends in ``.gz``.
-
-    Raises ValueError for NaN and infinity, which JSON does not have.
-    """
+    """Return a result file's content: JSON, for ``.gz`` compressed. Raises ValueError for NaN, infinity."""
     text = json.dumps(document, separators=(",", ":"), allow_nan=False, ensure_ascii=False)
     content = f"{text}\n".encode()
     return gzip.compress(content, _LEVEL, mtime=0) if path.suffix == ".gz" else content

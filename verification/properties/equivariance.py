@@ -19,8 +19,7 @@ FORCES = ("normal_force", "friction_force")
 
 
 def equal_states(moved: rf.Solution, pressure: Array, base: rf.Solution, sample: Sample, sign: float) -> None:
-    """Require moved pressures equal to ``pressure``, forces and approach those of ``base``; Q times
-    ``sign``."""
+    """Require moved pressures to be ``pressure``, forces and approach ``base``'s; Q times ``sign``."""
     require(moved.status in ENDED_WELL)
     require(np.array_equal(moved.pressure > 0, pressure > 0))
     require(np.abs(moved.pressure - pressure).max() <= RESIDUAL * base.max_pressure)

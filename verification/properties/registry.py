@@ -38,10 +38,7 @@ def require(holds: object, claim: str = "the invariant does not hold") -> None:
 
 @dataclass(frozen=True)
 class Invariant:
-    """``check`` raises AssertionError where ``claim`` does not hold for a sample of ``samples``.
-
-    ``found`` are counterexamples met in the past: they are always tried.
-    """
+    """``check`` raises AssertionError where ``claim`` fails on ``samples``, or on ``found``, met before."""
 
     name: str
     claim: str

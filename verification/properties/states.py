@@ -36,8 +36,7 @@ def displacement(sample: Sample, solution: rf.Solution) -> Array:
 
 
 def compliances(scene: rf.Scene) -> tuple[float, float]:
-    """Return the factors of ``I[1/rho]`` and ``I[s/rho^2]`` of the pair (1/Pa), anew; c is lower minus
-    upper."""
+    """Return the factors of ``I[1/rho]`` and ``I[s/rho^2]`` (1/Pa), anew; c is lower minus upper."""
     lower, upper = scene.lower.material, scene.upper.material
     a = (1 - lower.nu**2) / (math.pi * lower.E) + (1 - upper.nu**2) / (math.pi * upper.E)
     c_lower = (1 + lower.nu) * (1 - 2 * lower.nu) / (2 * math.pi * lower.E)
@@ -46,8 +45,7 @@ def compliances(scene: rf.Scene) -> tuple[float, float]:
 
 
 def slope_along_and_across(sample: Sample, solution: rf.Solution) -> tuple[Array, Array]:
-    """Return the tangents of theta_x and theta_y of the mean of the returned surfaces, by differences written
-    out."""
+    """Return tan theta_x, theta_y of the mean returned surface, by differences written out."""
     z = np.add(*solution.surfaces) / 2
     (n, m), (dx, dy) = sample.shape, sample.grid.spacings
     d = np.zeros((2, n, m))
@@ -182,8 +180,7 @@ def agrees_with_the_dense_reference(solver: Solver, sample: Sample) -> None:
 
 
 def same_pressure(one: rf.Solution, other: rf.Solution, sample: Sample) -> None:
-    """Require equal contact sets, pressures to `RESIDUAL` of the peak; approaches to it from first
-    contact."""
+    """Require equal sets, pressures to `RESIDUAL` of the peak; approaches to it from contact."""
     require(np.array_equal(one.contact, other.contact))
     require(np.abs(one.pressure - other.pressure).max() <= RESIDUAL * other.max_pressure)
     require(abs(one.approach - other.approach) <= RESIDUAL * abs(from_first_contact(sample, other)))

@@ -1,8 +1,7 @@
-"""Ensembles of a shipped study: run (or taken up where a killed run left off), averaged, with intervals."""
+"""Ensembles of a shipped study: run, and averaged, with intervals."""
 
 from __future__ import annotations
 
-import os
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -17,7 +16,6 @@ from verification.sweep.run import CERTIFIED, Row
 from verification.sweep.study import Study
 from verification.sweep.study_file import read_study
 
-FOLDER = "ROUGH_FRICTION_SWEEPS"  # environment variable: keep stores there; they outlive a killed run
 CONFIDENCE = 0.95
 
 
@@ -63,33 +61,18 @@ QUICK: Mapping[str, tuple[int, Mapping[str, Iterable[float]]]] = {
 
 @cache
 def rows_at(tier: str, name: str) -> tuple[Row, ...]:
-    """Return all rows of a shipped study, or in the quick tier those of its part on `QUICK_MESH` elements a
-    side."""
+    """Return all rows of a shipped study; in the quick tier those on `QUICK_MESH` elements a side."""
     if tier == "full":
-        return rows_of(name)
+        return rows(read_study(name))
     study, (realisations, vary) = read_study(name), QUICK[name]
     part = {"grid": (QUICK_MESH,)} | {axis: tuple(map(float, values)) for axis, values in vary.items()}
     return rows(replace(study, realisations=realisations, vary={**study.vary, **part}))
 
 
-@cache
-def rows_of(name: str) -> tuple[Row, ...]:
-    """Return all rows of a shipped study, kept in the folder that `FOLDER` names, if any; see `rows`."""
-    folder = os.environ.get(FOLDER)
-    if not folder:
-        return rows(read_study(name))
-    Path(folder).mkdir(parents=True, exist_ok=True)
-    return rows(read_study(name), Path(folder) / f"{name}.sqlite")
-
-
-def rows(study: Study, store: Path | None = None) -> tuple[Row, ...]:
-    """Return all rows of a study, solved in this process, and kept in the store if one is given.
-
-    Raises RuntimeError when a run failed or its certificate does not meet the tolerance: an ensemble with
-    gaps is no ensemble.
-    """
+def rows(study: Study) -> tuple[Row, ...]:
+    """Return all rows of a study, solved here. RuntimeError where one failed or is not certified."""
     with tempfile.TemporaryDirectory() as folder:
-        done = sweep(study, store or Path(folder) / "rows.sqlite", workers=0)
+        done = sweep(study, Path(folder) / "rows.sqlite", workers=0)
     uncertified = [row["key"] for row in done.rows if row["status"] not in CERTIFIED]
     if done.failures or uncertified:
         first = next(iter(done.failures.values()), uncertified[:1])
@@ -98,10 +81,7 @@ def rows(study: Study, store: Path | None = None) -> tuple[Row, ...]:
 
 
 def column(found: Iterable[Row], quantity: str, **where: float) -> list[float]:
-    """Return the values of a quantity in the rows whose coordinates equal those given, in order.
-
-    Raises LookupError when there are none.
-    """
+    """Return the values of a quantity in rows at given coordinates, in order; LookupError for none."""
     chosen = [row[quantity] for row in found if all(row[k] == v for k, v in where.items())]
     if not chosen:
         raise LookupError(f"no run has {where}")

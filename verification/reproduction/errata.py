@@ -53,8 +53,7 @@ def _off(value: float, reference: float) -> float:
 
 
 def _slope_misfit(factor: float) -> float:
-    """Return the quoted slopes against ``factor`` times the component rms slope of Eq. (9), l = 33
-    elements."""
+    """Return the quoted slopes against ``factor`` times the component rms of Eq. (9), l = 33."""
     length = LENGTH_IN_ELEMENTS * RESOLUTION
     slopes = {rms: rf.GaussianRoughness(rms, length, seed=0).rms_slope for rms in FLAT_RMS}
     return max(_off(math.degrees(factor * slope), QUOTED_SLOPES[rms]) for rms, slope in slopes.items())
@@ -70,8 +69,7 @@ def _ours(quantity: str, flat_rms: float) -> float:
 
 
 def _limit_misfit(*, elastic: bool) -> float:
-    """Return the printed friction at 1.68 um against its lower limit, or against Eq. (10) at the pressure
-    solved for."""
+    """Return friction printed at 1.68 um against its lower limit, or Eq. (10) at our pressure."""
     printed = TABLE3[-1].friction_coefficient[-1]
     if not elastic:
         return _off(printed, LOWEST_FRICTION)
@@ -96,8 +94,7 @@ def _coarse_misfit(*, printed: bool) -> float:
 
 
 def _outside(roughness: Iterable[float]) -> float:
-    """Return how far equivalent roughnesses (m) lie outside the range of section 6.1, relative to its
-    ends."""
+    """Return how far equivalent roughnesses (m) leave section 6.1's range, relative to its ends."""
     lowest, highest = (math.hypot(SPHERE_RMS, flat) for flat in FLAT_RMS)
     values = list(roughness)
     return max(0.0, 1 - min(values) / lowest, max(values) / highest - 1)

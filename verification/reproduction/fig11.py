@@ -40,8 +40,7 @@ class Panel:
 
 
 def samples(realisation: int, grid: int) -> tuple[Array, Array, Array, Array]:
-    """Return the four samples of one realisation at P = 70 N: heights in um, slopes (along sliding) in
-    degrees.
+    """Return a realisation's four samples at 70 N: heights in um, slopes along sliding in degrees.
 
     Undeformed: the flat within the nominal contact, the Hertz circle. In contact: the deformed flat's heights
     and the slopes of the common surface on the true contact.

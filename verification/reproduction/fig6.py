@@ -75,7 +75,6 @@ class Profile:
 
 
 def _rms(pressure: Array) -> float:
-    """Return the root mean square over rings of equal area, over Hertz' peak."""
     return float(np.sqrt(np.mean(pressure**2))) / hertz().peak_pressure
 
 
@@ -111,15 +110,13 @@ def textbook(rms: float, mu: float = 4.0) -> gt.RoughSphere:
 
 
 def contact(rms: float, realisation: int, grid: int) -> rf.Solution:
-    """Return the frictionless contact with all the roughness on the flat, slopes neglected ("tips of
-    asperities")."""
+    """Return frictionless contact, all roughness on the flat, no slopes ("tips of asperities")."""
     scene = rough(rms, realisation=realisation, friction=NO_FRICTION)
     return rf.solve(scene, grid, oblique=False)
 
 
 def effective_pressure(rms: float, first: int, realisations: int, grid: int) -> Profile:
-    """Return the pressures of realisations from ``first`` on by ring, and both theories' on the same
-    rings."""
+    """Return pressures by ring from realisation ``first`` on, and both theories' there."""
     centres = SMOOTH.grid(grid).x - SMOOTH.lengths[0] / 2
     distance = np.hypot(centres[:, None], centres[None, :])
     ring = (RINGS * (2 * distance / SMOOTH.lengths[0]) ** 2).astype(int)

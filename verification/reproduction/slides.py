@@ -39,13 +39,7 @@ def turning(found: Sequence[Row]) -> list[Turning]:
 
 
 def beyond_mean_slope(direction: Array, values: Array) -> float:
-    """Return the share of the variance over directions (rad) that first harmonics leave; shape as in
-    `Turning`.
-
-    >>> angle = np.radians([0, 60, 120, 180, 240, 300])
-    >>> round(beyond_mean_slope(angle, np.array([3 * np.cos(angle) + np.sin(angle)])), 12)
-    0.0
-    """
+    """Return the share of variance over directions (rad) beyond first harmonics; as in `Turning`."""
     mean_free = values - values.mean(axis=1, keepdims=True)
     harmonic = np.column_stack([np.cos(direction), np.sin(direction)])
     fitted = mean_free @ np.linalg.pinv(harmonic).T @ harmonic.T
@@ -67,8 +61,7 @@ class Trace:
 
 
 def trace(found: Sequence[Row], quantity: str) -> Trace:
-    """Return the statistics of a trace; ``correlated`` is the integral of its autocorrelation up to the first
-    zero."""
+    """Return a trace's statistics; ``correlated``: its autocorrelation's integral to the first zero."""
     offset = np.array([row["sliding_offset"] for row in found])
     values = np.array([row[quantity] for row in found])
     deviation = values - values.mean()

@@ -43,8 +43,7 @@ class Cell:
 
 
 def half_digit(printed: float) -> float:
-    """Return half a unit of the last printed digit: mu and A (0.1 mm^2) have two decimals of 0.1, pressures
-    three digits.
+    """Return half the last printed digit: two decimals of mu and A (0.1 mm^2), three digits of f.
 
     >>> half_digit(0.218), half_digit(4.4e-8), half_digit(1.64e8), half_digit(1.91e9)
     (0.0005, 5e-10, 500000.0, 5000000.0)

@@ -61,8 +61,7 @@ class Tangential:
 
 
 def displacements(scene: rf.Scene, found: rf.Solution) -> Tangential:
-    """Return the tangential displacements by the solution's own tractions; sliding along x. Raises ValueError
-    otherwise.
+    """Return displacements by the solution's tractions; along x, ValueError otherwise.
 
     At a fixed place the deformed surface shows the height that was a displacement away, so the gap changes by
     ``-u_upper . grad z_upper + u_lower . grad z_lower``.

@@ -14,10 +14,7 @@ Function = Callable[[str], Measured]
 def in_both_tiers(
     id: str, *, tolerance: float | Mapping[str, float], **declared: str
 ) -> Callable[[Function], Function]:
-    """Declare ``id`` in the quick tier and ``id-full`` in the full one; the function gets the tier.
-
-    ``tolerance`` is one number, or one for each tier.
-    """
+    """Declare ``id`` (quick) and ``id-full``; the function gets the tier, each may have a ``tolerance``."""
     by_tier = tolerance if isinstance(tolerance, Mapping) else dict.fromkeys(TIERS, tolerance)
     ids = {id: "quick", f"{id}-full": "full"}
     return family("tier, tolerance", {i: (tier, by_tier[tier]) for i, tier in ids.items()}, **declared)

@@ -164,8 +164,7 @@ class Entrant:
         return error / self.claim
 
     def against(self, *answers: tuple[Pressed, Array]) -> Measured:
-        """Return the worst misfit of answers against exact pressures; the note tells where that answer is
-        off."""
+        """Return the worst misfit against exact pressures; the note tells where that answer is off."""
         misfits = [self.misfit(pressed, exact) for pressed, exact in answers]
         worst = int(np.argmax(misfits))
         which = f"problem {worst + 1} of {len(answers)}: " if len(answers) > 1 else ""

@@ -56,10 +56,7 @@ def require_timeout(seconds: float) -> None:
 
 @dataclass(frozen=True)
 class Command:
-    """A program with its arguments; ``timeout`` in seconds for one problem.
-
-    Raises `InputError` for an empty command or a time out of range.
-    """
+    """A program with arguments; ``timeout`` (s) of a problem. `InputError` if empty or out of range."""
 
     words: tuple[str, ...]
     abilities: Abilities
@@ -72,10 +69,7 @@ class Command:
 
     @classmethod
     def of(cls, line: str, abilities: Abilities, timeout: float) -> Command:
-        """Parse a command line, split like a shell does; no shell runs it.
-
-        Raises `InputError` also where its first word is no program.
-        """
+        """Parse a command line as a shell splits it. `InputError` where its first word is no program."""
         try:
             words = tuple(words_of(line))
         except ValueError as unbalanced:
@@ -102,7 +96,6 @@ class Command:
             return read_answer(directory)
 
     def _run(self, directory: Path) -> None:
-        """Run to its end in a process group of its own, which is killed when the time is up."""
         with (directory / "output.txt").open("w+b") as output:
             try:
                 process = subprocess.Popen(
@@ -177,8 +170,7 @@ def read_answer(directory: Path) -> Answer:
 
 
 def _read_table(path: Path) -> Array:
-    """Return the numbers between commas; ValueError says which line has something else, or another number of
-    them."""
+    """Return the numbers between commas; ValueError names the line with others, or another count."""
     rows: list[list[float]] = []
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
         if not line:

@@ -114,8 +114,7 @@ CASES = (
 
 
 def exit_status(results: Sequence[Result]) -> int:
-    """Return 0 if some limit was judged, all that were are right, and all orders hold; else `WRONG` or
-    `SLOW`."""
+    """Return 0 if a limit was judged, all those are right and all orders hold; else `WRONG`, `SLOW`."""
     statuses = [result.status for result in results]
     if "pass" not in statuses or "fail" in statuses or "error" in statuses:
         return WRONG

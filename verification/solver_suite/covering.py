@@ -30,8 +30,7 @@ def stored(name: str, design: Design) -> list[dict[str, object]]:
 
 
 def covering(sizes: Sequence[int], seed: int, *, strength: int, tries: int) -> list[list[int]]:
-    """Return the rows of a covering array of dimensions with so many levels, by a greedy search among
-    completions.
+    """Return a covering array of dimensions with so many levels, by greedy search among completions.
 
     Of ``tries`` random completions of a row the best is taken.
 

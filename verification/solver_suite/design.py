@@ -1,7 +1,4 @@
-"""Problems of the covering designs.
-
-Judged by the linear residual, recomputed by `reference_solution`: no answer has to be known.
-"""
+"""Problems of covering designs, judged by the residual of `reference_solution`: no answer is needed."""
 
 from __future__ import annotations
 

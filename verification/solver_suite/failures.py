@@ -17,8 +17,7 @@ Counts = dict[str, dict[str, tuple[int, int]]]
 
 @cache
 def _levels(further: bool) -> dict[str, dict[str, str]]:
-    """Return the levels of the dimensions that its design varies, by the id of a case; and whether the size
-    is odd."""
+    """Return the levels that its design varies, by the id of a case; and whether the size is odd."""
     found: dict[str, dict[str, str]] = {}
     for name, design in (rows() | (further_rows() if further else {})).items():
         for number, row in enumerate(design, start=1):

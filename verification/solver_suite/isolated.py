@@ -49,10 +49,7 @@ START = 120.0
 
 @dataclass(frozen=True)
 class Named:
-    """A solver under test by the name of a Python object, ``package.module:function``.
-
-    ``stated`` are fields of `Abilities` that replace those that the object carries; the others stay.
-    """
+    """A Python object, ``package.module:function``; ``stated`` replaces fields of its `Abilities`."""
 
     name: str
     stated: Mapping[str, Any] = field(default_factory=dict)
@@ -86,7 +83,6 @@ class Limited:
     identity: Identity = field(default_factory=dict)
 
     def __call__(self, problem: ContactProblem) -> Answer | Array:
-        """Pass the problem on."""
         return self.solver(problem)
 
 
@@ -105,7 +101,6 @@ class Remote:
         self.abilities = self._open()
 
     def __call__(self, problem: ContactProblem) -> Answer:
-        """Return the solver's answer. Raises `Reported` for what became of it instead, and `Unavailable`."""
         if self._lost:
             self.close()
             self._open()
@@ -138,8 +133,7 @@ class Remote:
         return abilities
 
     def _greeting(self) -> Abilities:
-        """Return the abilities of the solver. Raises `InputError` for one that is refused, or whose process
-        is lost."""
+        """Return the solver's abilities. Raises `InputError` if it is refused, or its process is lost."""
         try:
             said, _ = process.reply(self._process, self._folder / "0", START)
             if "abilities" in said:
@@ -165,8 +159,7 @@ def run(
     tick: Callable[[Result], None] = lambda result: None,
     left: Callable[[str], None] = lambda process: None,
 ) -> list[Result]:
-    """Return the results of the checks that match ``globs`` (all without any), with ``timeout`` seconds for
-    one problem.
+    """Return the results of checks that match ``globs`` (or all), ``timeout`` seconds a problem.
 
     ``among`` takes the place of the suite; ``name`` is what a refusal calls the solver. ``identified`` sees
     the solver's identity, ``begin`` and ``tick`` each check before and after, and ``left`` what the solver

@@ -51,8 +51,7 @@ def contact_area(problem: ContactProblem, f: Array) -> Number:
 
 
 def approach(problem: ContactProblem, f: Array) -> Number | None:
-    """Return the approach as the problem counts it (m); None without load, and where a hardness leaves it
-    open."""
+    """Return the approach as the problem counts it (m); None without load, or left open by a hardness."""
     if problem.approach is None and f.sum() <= 0:
         return None
     contact = f > 0

@@ -55,8 +55,7 @@ class Own:
 
 
 def solved(problem: ContactProblem, tolerance: float, method: Method = "fft") -> rf.Solution:
-    """Return the problem's solution; ``tolerance`` is the suite's residual. Raises `Unsupported` as `scene`
-    does."""
+    """Return the problem's solution; ``tolerance`` is the suite's residual. Raises as `scene` does."""
     return rf.solve(
         scene(problem),
         problem.shape,
@@ -69,10 +68,7 @@ def solved(problem: ContactProblem, tolerance: float, method: Method = "fft") ->
 
 
 def scene(problem: ContactProblem) -> rf.Scene:
-    """Return the problem as a scene: the gap is the upper body's surface, the lower one is flat.
-
-    Raises `Unsupported` for a coupling that no pair of Poisson's ratios has.
-    """
+    """Return the problem as a scene, the gap over a flat. Raises `Unsupported` if no nu has its coupling."""
     coupling = problem.coupling
     lower, upper = materials(problem.reduced_modulus, coupling.shear_compliance if coupling else 0.0)
     lower = replace(lower, hardness=problem.hardness)
@@ -88,8 +84,7 @@ def scene(problem: ContactProblem) -> rf.Scene:
 
 
 def materials(reduced_modulus: float, shear_compliance: float) -> tuple[rf.Material, rf.Material]:
-    """Return the lower and upper body with this E* (Pa) and c0 (1/Pa): two alike, or a compressible and a
-    rigid one.
+    """Return bodies of this E* (Pa) and c0 (1/Pa): two alike, or a compressible and a rigid one.
 
     For a rigid partner ``pi c0 E* = (1 - 2 nu)/(2 (1 - nu))``, which is solved for nu.
 

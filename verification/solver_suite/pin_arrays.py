@@ -54,15 +54,13 @@ def graded(contact: Mask, seed: int) -> Array:
 
 @lru_cache(maxsize=4096)
 def integrals(i: int, j: int) -> tuple[float, float]:
-    """Return ``I[1/rho]`` and ``I[x/rho^2]`` of a unit element at an offset of whole elements, from 50
-    digits."""
+    """Return ``I[1/rho]`` and ``I[x/rho^2]`` of a unit element at a whole offset, from 50 digits."""
     at = float(abs(i)), float(abs(j)), 1.0, 1.0
     return float(kernel_reference.normal(*at)), float(np.sign(i) * kernel_reference.tangential(*at))
 
 
 def displacement(pressure: Array, coupling: Coupling | None, modulus: float) -> Array:
-    """Return the normal displacement (m) of the loaded elements of a free square of 1 m, summed element by
-    element."""
+    """Return the loaded elements' displacement (m) in a free square of 1 m, summed singly."""
     pins, M = np.argwhere(pressure > 0), len(pressure)
     u = np.zeros_like(pressure)
     for to in pins:

@@ -51,10 +51,7 @@ serve({folder!r})"""
 
 
 def start(source: Source, folder: Path, mark: str) -> subprocess.Popen[bytes]:
-    """Start a solver's process in a session of its own; it keeps its files in the folder.
-
-    What it prints goes to standard error, so that it cannot end up in a result file.
-    """
+    """Start a solver in a session of its own, with its folder; what it prints goes to standard error."""
     (folder / "source").write_bytes(pickle.dumps(source))
     return subprocess.Popen(
         [sys.executable, "-c", _SERVE.format(path=sys.path, folder=str(folder))],
@@ -192,7 +189,6 @@ def _posed(solver: SolverUnderTest, problem: Any) -> tuple[dict[str, Any], bytes
 
 
 def _alive(process: psutil.Process) -> bool:
-    """Return whether a process is there and no zombie."""
     try:
         return bool(process.is_running() and process.status() != psutil.STATUS_ZOMBIE)
     except psutil.Error:

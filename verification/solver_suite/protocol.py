@@ -249,13 +249,7 @@ class Abilities:
 
     @classmethod
     def named(cls, names: str, *, largest: int | None = None, precision: float = 1e-8) -> Abilities:
-        """Return only the abilities in a comma-separated list.
-
-        >>> Abilities.named("aperiodic,load,rectangle,oblong elements").periodic
-        False
-
-        Raises `InputError` for an unknown name, and where no problem at all could be posed.
-        """
+        """Return only the abilities of a list with commas. `InputError` if unknown, or if none is posed."""
         words = (name.strip().replace("-", " ").split() for name in names.split(","))
         given = ["_".join(name) for name in words if name]
         domain, control = {"periodic", "aperiodic"} & {*given}, {"load", "approach"} & {*given}
@@ -268,12 +262,7 @@ class Abilities:
         return cls(**{name: name in given for name in FLAGS}, largest=largest, precision=precision)
 
     def lacking(self, problem: ContactProblem) -> str | None:
-        """Return the requirement of the problem beyond these abilities, or None.
-
-        >>> problem = ContactProblem(np.zeros((2, 2)), 1e-6, 1e9, load=1.0, periodic=True)
-        >>> Abilities(periodic=False).lacking(problem)
-        'periodic'
-        """
+        """Return the requirement of the problem beyond these abilities, or None."""
         required = {
             "periodic": problem.periodic,
             "aperiodic": not problem.periodic,
@@ -299,10 +288,7 @@ SolverUnderTest = Callable[[ContactProblem], "Answer | Array"]
 
 
 def abilities_of(solver: SolverUnderTest) -> Abilities:
-    """Return its ``abilities`` attribute, or the defaults: squares of any size, without coupling.
-
-    Raises `InputError` when the attribute is no `Abilities`.
-    """
+    """Return ``abilities``, or squares of any size without coupling. Raises `InputError` for other types."""
     found = getattr(solver, "abilities", None)
     if found is None:
         return Abilities()
@@ -355,7 +341,6 @@ def ask(solver: SolverUnderTest, problem: ContactProblem) -> Answer:
 
 
 def _numbers(answer: Answer) -> dict[str, float]:
-    """Return the numbers that an answer has, by name. Raises `BadAnswer` for what is no finite number."""
     found = {name: getattr(answer, name) for name in NUMBERS if getattr(answer, name) is not None}
     for name, number in found.items():
         real = isinstance(number, numbers.Real) and not isinstance(number, bool)

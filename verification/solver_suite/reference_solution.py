@@ -58,13 +58,11 @@ def _matrix(problem: ContactProblem, direction: float | None) -> Array:
 
 @lru_cache(maxsize=4)
 def _unit_matrix(shape: tuple[int, int], aspect: float, direction: float | None) -> Array:
-    """Return the same for elements of edge 1 along x and ``aspect`` along y."""
     grid = Grid(shape, (float(shape[0]), shape[1] * aspect))
     return normal_matrix(grid) if direction is None else shear_matrix(grid, direction)
 
 
 def _edges(problem: ContactProblem) -> tuple[float, float]:
-    """Return the edges of an element in units of that along x."""
     return 1.0, problem.spacings[1] / problem.spacings[0]
 
 
@@ -125,8 +123,7 @@ def _filtered(field: Array, symbol: NDArray[np.complex128]) -> Array:
 
 
 def energy(problem: ContactProblem, pressure: Array) -> float:
-    """Return the elastic energy ``1/2 sum f (a f) dA`` (J). Raises ValueError for more than a double
-    holds."""
+    """Return the elastic energy ``1/2 sum f (a f) dA`` (J). Raises ValueError beyond doubles."""
     with np.errstate(over="ignore", invalid="ignore"):
         stored = 0.5 * float(np.vdot(pressure, by_pressure(problem, pressure))) * problem.element_area
     if not np.isfinite(stored):
@@ -175,8 +172,7 @@ def residual(problem: ContactProblem, pressure: Array) -> Residual:
 
 
 def _two_sided_gap(f: Array, v: Array, hardness: float, approach: float | None) -> float:
-    """Return ``sum [f (v - d)+ + (H - f)(d - v)+]`` (Pa m), d being the approach or the mean of v that f
-    weights.
+    """Return ``sum [f (v - d)+ + (H - f)(d - v)+]`` (Pa m), d the approach or f's mean of v.
 
     It is the most that ``sum (f - g)(v - d)`` reaches for pressures g between the bounds, so at the load of
     the solution it bounds the squared error in the energy norm, whatever d is (see `misfit`).
@@ -194,8 +190,7 @@ def _two_sided_gap(f: Array, v: Array, hardness: float, approach: float | None) 
 
 
 def misfit(problem: ContactProblem, found: Array, exact: Array) -> float:
-    """Return ``(f - f*) a (f - f*)`` over ``1/2 f* a f*``: the square of the relative error in the energy
-    norm.
+    """Return ``(f - f*) a (f - f*)`` over ``1/2 f* a f*``: relative error in the energy norm, squared.
 
     It is at most the relative complementarity gap of ``f``, by the skewness of c for any coupling at fixed
     tau: with ``e = f - f*``, ``e' a e = e' (v - v*) <= f' (v - min v)``. (The periodic mean stores no energy;
@@ -208,11 +203,7 @@ def misfit(problem: ContactProblem, found: Array, exact: Array) -> float:
 
 
 def approach_of(problem: ContactProblem, pressure: Array) -> float:
-    """Return the approach (m) at which pressures solve the problem, as the problem counts it: mean of v over
-    f.
-
-    Raises ValueError where there is no load to carry it.
-    """
+    """Return the approach (m) as the problem counts it: mean of v over f. ValueError without load."""
     if not pressure.sum() > 0:
         raise ValueError("the pressures carry no load: no approach")
     v = displacement(problem, pressure) + problem.gap
@@ -221,8 +212,7 @@ def approach_of(problem: ContactProblem, pressure: Array) -> float:
 
 
 def _flexibility(problem: ContactProblem) -> Array:
-    """Return the displacements (m/Pa) of all elements by all, frictionless or with beta. Raises ValueError
-    for tau."""
+    """Return displacements (m/Pa) of all elements by all, also with beta. ValueError for tau."""
     c, (n, m) = problem.coupling, problem.shape
     if c is not None and c.tau != 0:
         raise ValueError("elimination is for problems without tau")
@@ -239,8 +229,7 @@ def _flexibility(problem: ContactProblem) -> Array:
 
 
 def _on(problem: ContactProblem, matrix: Array, contact: Mask) -> tuple[Array, float]:
-    """Return the pressures (all elements) and approach from first contact on a contact set, by Gauss'
-    elimination."""
+    """Return pressures (all elements) and approach from first contact on a set, by Gauss' elimination."""
     k, gap = np.flatnonzero(contact), problem.gap.ravel()
     block, approach, f = matrix[np.ix_(k, k)], problem.approach_from_touch, np.zeros(gap.size)
     if approach is not None:

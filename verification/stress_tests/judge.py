@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from functools import partial, wraps
-from typing import Any, ParamSpec
+from functools import partial
+from typing import Any, TypeVar
 
 import mpmath as mp
 import numpy as np
 
 import refimpl as rf
+from appendix_a.errors import InputError
 from refimpl.planning.plan import Method
+from verification.exact import lawful_states
 from verification.stress_tests.oracle import NotSettled, Oracle
-from verification.stress_tests.state import Extreme, Judged, Verdict, number
+from verification.stress_tests.state import EXISTS, Extreme, Judged, Verdict, number
 
 TOLERANCE = 1e-10
 """Tolerance of every solve, a hundredth of the default: larger errors belong to the state."""
@@ -24,28 +26,36 @@ M = 5
 """Elements a side of states that the oracle judges, unless an axis varies them."""
 SOLVERS: tuple[Method, ...] = ("fft", "dense")
 GOOD = (rf.Status.CONVERGED, rf.Status.CYCLED, rf.Status.NO_CONTACT)
-P = ParamSpec("P")
+DOCUMENTED = (rf.InputError, rf.NotConverged, InputError)
+"""Exceptions by which the code under test says that it refuses, or finds no solution."""
+T = TypeVar("T")
 
 
-def caught(judge: Callable[P, Judged]) -> Callable[P, Judged]:
-    """Return the judge with a verdict on exceptions: a refusal is a detected failure, all else a crash."""
+class Failed(Exception):
+    """Exception of the code under test, which is its cause; those of judges come as they are."""
 
-    @wraps(judge)
-    def judged(*args: P.args, **kwargs: P.kwargs) -> Judged:
-        try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                return judge(*args, **kwargs)
-        # Exceptions of any kind are what the stress tests look for: here they are found, named and counted.
-        except Exception as error:
-            refused, unjudged = isinstance(error, rf.InputError), isinstance(error, NotSettled)
-            # documented: the frozen problem has no solution, or no approach carries the load
-            detected = refused or type(error) is ArithmeticError
-            status = "InputError" if refused else "unjudged" if unjudged else type(error).__name__
-            verdict, oracle = (Verdict.DETECTED, "refused") if detected else (Verdict.CRASH, "none")
-            return Judged(verdict, status, None, WRONG_FROM, oracle, str(error).partition("\n")[0])
 
-    return judged
+def tested(run: Callable[..., T], *args: Any, **kwargs: Any) -> T:
+    """Return what the code under test returns; raises Failed where it raises."""
+    try:
+        return run(*args, **kwargs)
+    # Exceptions of any kind are what the stress tests look for: `judged` names and counts them.
+    except Exception as error:
+        raise Failed from error
+
+
+def judged(judge: Callable[[], Judged]) -> Judged:
+    """Return a judge's verdict, or one on the exception of what it tests, or of its own."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return judge()
+    except Failed as failed:
+        error = failed.__cause__
+        verdict = Verdict.DETECTED if isinstance(error, DOCUMENTED) else Verdict.CRASH
+    except Exception as own:
+        error, verdict = own, Verdict.UNJUDGED
+    return Judged(verdict, type(error).__name__, None, WRONG_FROM, "none", str(error).partition("\n")[0])
 
 
 def state(
@@ -60,47 +70,40 @@ def state(
     return Extreme(f"{series}, {method}", at, x, run, seconds)
 
 
-@caught
 def by_oracle(scene: rf.Scene, elements: int, method: Method = "fft", **options: Any) -> Judged:
     """Judge pressure, approach and forces against the exact discrete state."""
-    solution = rf.solve(scene, elements, method=method, tolerance=TOLERANCE, **options)
+    solution = tested(rf.solve, scene, elements, method=method, tolerance=TOLERANCE, **options)
     try:
         error, note = exact_error(scene, solution, **options)
     except NotSettled:
         if solution.status in GOOD:
             raise
         error, note = np.inf, ""
-    if solution.status not in GOOD and error > WRONG_FROM and "approach" not in options:
-        note = sought(oracle_of(scene, elements, **options))
+    if solution.status not in GOOD:
+        note = sought(scene, elements, **options)
     return verdict(solution, error, "the exact discrete state, 34 digits", note)
 
 
-def oracle_of(scene: rf.Scene, M: int, **options: Any) -> Oracle:
-    """Return the oracle of a scene by the options of `refimpl.solve`."""
-    return Oracle(
-        scene, M,
-        approach=options.get("approach"),
-        oblique=options.get("oblique", True) is not False,
-        slope_correction=options.get("slope_correction", False),
-    )  # fmt: skip
-
-
-def sought(oracle: Oracle) -> str:
-    """Return whether continuation finds a state that no solver found, and that obeys the law everywhere."""
+def sought(scene: rf.Scene, M: int, **options: Any) -> str:
+    """Return whether there is a state that no solver found, and that obeys the law everywhere."""
     try:
-        oracle.continued()
+        Oracle(scene, M, **options).continued()
     except NotSettled as unsettled:
+        if options == {"oblique": False} and not scene.periodic and lawful_states.none_is_lawful(scene, M):
+            return "no state exists: integer programming over all contact sets"
         return f"continuation finds no state: {unsettled}"
-    return "a state exists: found by continuation"
+    return EXISTS
 
 
 def verdict(
     solution: rf.Solution, error: float, oracle: str, note: str = "", limit: float = WRONG_FROM, **data: float
 ) -> Judged:
-    """Return right or wrong where the status claims success, else a detected failure with its error."""
+    """Return right or wrong of a claimed success, else a detected failure with its error; tau's share."""
     status = solution.status.value
     if solution.status in GOOD:
         return number(error, limit, status, oracle, note, **data)
+    excluded = solution.details.excluded & solution.contact
+    data["without tau"] = float(excluded.sum() / max(1, solution.contact.sum()))
     return Judged(Verdict.DETECTED, status, error if np.isfinite(error) else None, limit, oracle, note, data)
 
 
@@ -117,7 +120,7 @@ def exact_error(scene: rf.Scene, solution: rf.Solution, **options: Any) -> tuple
     displacement that one element's peak pressure makes; forces to N. A contact set that differs by elements
     further than rounding from the edge of contact counts as an error of 1.
     """
-    oracle = oracle_of(scene, len(solution.pressure), **options)
+    oracle = Oracle(scene, len(solution.pressure), **options)
     if not solution.contact.any():
         return _untouched(oracle, solution)
     tau = scene.friction.tau
@@ -145,7 +148,6 @@ def exact_error(scene: rf.Scene, solution: rf.Solution, **options: Any) -> tuple
 
 
 def _untouched(oracle: Oracle, solution: rf.Solution) -> tuple[float, str]:
-    """Judge no contact: right where the exact gap is nowhere below the approach."""
     if oracle.approach is None:
         return 1.0, "no contact under a load"
     overlap = oracle.approach - min(oracle.h)

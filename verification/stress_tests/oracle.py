@@ -4,7 +4,7 @@ Unknowns are one number an element (its pressure in contact, its gap elsewhere, 
 signs), the tangents of the common surface, and the approach. Newton's method solves Eqs (2), (6) and (7)
 together, and exchanges elements whose number is negative. The Jacobian is exact, by complex steps in doubles;
 residuals are taken in 34 digits at last, where every step leaves ten digits more. A state that is not reached
-from the one under test is sought by continuation in the load, or in beta.
+from the one under test is sought by continuation in the load, in beta, and in tau.
 
 At fixed slopes and a fixed active set of tau the problem has one solution (`positive_definite`), so where the
 search starts cannot bend the answer. Where friction is strong, slopes may stand in several states: one that
@@ -29,7 +29,8 @@ STEPS, REFINEMENTS = 60, 20  # at most: steps of Newton in doubles, and in digit
 CLOSE, SETTLED = 1e-8, 1e-20  # largest last step: relative to the state; in digits, below a double's
 TIE = 1e-26  # share of the maximum pressure or gap: signs nearer to zero are ties
 TINY = 1e-60  # complex step
-FIRST, RATIO, SOLVES = 1e-3, 10**0.5, 60  # continuation: first factor, largest ratio, limit
+ROUTES = {"load": 1e-3, "beta": 1e-6, "tau": 1e-6}  # continuation: what it leads up, from which share on
+LARGEST, LEAST, SOLVES = 10**0.5, 1.01, 60  # ratio of two shares, at most and at least; solves, at most
 
 
 class NotSettled(ArithmeticError):
@@ -52,6 +53,14 @@ class Exactly:
     margin: float
 
 
+class Terms(NamedTuple):
+    """Load (N) and the constants of friction, beta and tau (Pa): the scene's own, or on the way to them."""
+
+    load: float
+    beta: float
+    tau: float
+
+
 class Guess(NamedTuple):
     """Unknowns in their units, elements in contact, and those units: of pressure (Pa), length and gap (m)."""
 
@@ -68,7 +77,8 @@ class Oracle:
         approach: float | None = None, oblique: bool = True, slope_correction: bool = False,
     ) -> None:  # fmt: skip
         grid, periodic = scene.grid(M), scene.periodic
-        self.scene, self.n, self.oblique, self.correction = scene, M**2, oblique, slope_correction
+        self.n, self.oblique, self.correction = M**2, oblique, slope_correction
+        self.own = Terms(scene.load, scene.friction.beta, scene.friction.tau)
         self.spacing = mp.mpf(scene.lengths[0]) / M
         bodies = [(mp.mpf(body.material.E), mp.mpf(body.material.nu)) for body in (scene.lower, scene.upper)]
         x, y = (matrix * self.spacing for matrix in operators.tangential(M, periodic))
@@ -91,43 +101,53 @@ class Oracle:
         self.doubles = {name: values.astype(float) for name, values in self.exact.items()}
 
     def solve(self, pressure: Array, support: Mask, tangents: tuple[Array, Array] | None = None) -> Exactly:
-        """Return the exact state that belongs to a returned pressure and to tau's active set, both ``(M,
-        M)``.
+        """Return the exact state of a returned pressure and of tau's active set, both ``(M, M)``.
 
         Slopes are sought from the returned ``tangents`` on, or from those that the pressure leaves on flats.
         """
-        law = self.scene.friction
-        guess = self._guess(pressure.ravel(), support.ravel(), law.beta, tangents)
-        guess = self._newton(guess, support.ravel(), self.scene.load, law.beta)
-        return self._refined(guess, support.ravel())
+        guess = self._guess(pressure.ravel(), support.ravel(), self.own, tangents)
+        return self._refined(self._newton(guess, support.ravel(), self.own), support.ravel())
 
     def continued(self) -> Exactly:
-        """Return the exact state under a load by continuation in beta where that is above 1, else in the
-        load."""
-        load, beta = self.scene.load, self.scene.friction.beta
-        known, ratio = min(1.0, 1 / beta) if beta > 1 else FIRST, RATIO
-        by_beta = beta > 1
+        """Return an exact state with tau on all of its contact, by the first route that arrives."""
+        for route, first in ROUTES.items():
+            if getattr(self.own, route) > 0:
+                try:
+                    return self._continued(route, first)
+                except NotSettled:
+                    pass  # the next route may arrive
+        raise NotSettled("neither the load's route, nor beta's, nor tau's arrives")
 
-        def at(guess: Guess, factor: float) -> Guess:
-            return self._newton(
-                guess, None, load if by_beta else load * factor, beta * factor if by_beta else beta
-            )
+    def _continued(self, route: str, known: float) -> Exactly:
+        """Return the exact state by continuation in one of the terms, from a known share of it on."""
 
-        everywhere = np.ones(self.n, dtype=bool)
-        even = np.full(self.n, (load if by_beta else load * known) / self.n / float(self.spacing) ** 2)
-        guess = at(self._guess(even, everywhere, beta * known if by_beta else beta), known)
+        def terms(share: float) -> Terms:
+            return self.own._replace(**{route: share * getattr(self.own, route)})
+
+        even = np.full(self.n, terms(known).load / self.n / float(self.spacing) ** 2)
+        guess = self._guess(even, np.ones(self.n, dtype=bool), terms(known))
+        guess, ratio = self._newton(guess, None, terms(known)), LARGEST
         for _ in range(SOLVES):
             if known == 1:
-                return self._refined(guess, guess.contact)
-            factor = min(1.0, known * ratio)
+                return self._lawful(guess)
+            share = min(1.0, known * ratio)
             try:
-                guess, known, ratio = at(guess, factor), factor, min(RATIO, ratio**1.5)
+                guess, known, ratio = self._newton(guess, None, terms(share)), share, min(LARGEST, ratio**1.5)
             except NotSettled:
                 ratio = ratio**0.5
+                if ratio < LEAST:
+                    raise
         raise NotSettled("the continuation does not arrive")
 
+    def _lawful(self, guess: Guess) -> Exactly:
+        """Return the exact state; raises NotSettled where its contact is not tau's active set any more."""
+        found = self._refined(guess, guess.contact)
+        if not np.array_equal(found.contact, guess.contact):
+            raise NotSettled("the contact changes in the last digits")
+        return found
+
     def _guess(
-        self, f: Array, support: Mask, beta: float, tangents: tuple[Array, Array] | None = None
+        self, f: Array, support: Mask, terms: Terms, tangents: tuple[Array, Array] | None = None
     ) -> Guess:
         """Return the unknowns of a pressure; gaps, approach and slopes follow from its displacements."""
         peak = float(f.max())
@@ -139,27 +159,26 @@ class Oracle:
         x = np.zeros((3 * n + 1, 1))
         x[:n, 0] = f / peak
         if tangents is None or not self.oblique:  # the residual of flat slopes is minus those of the surface
-            of_flat = self._residual(self.doubles, Guess(x, contact, units), support, 1.0, beta)
+            of_flat = self._residual(self.doubles, Guess(x, contact, units), support, terms)
             x[n : 3 * n] = -of_flat[n : 3 * n] if self.oblique else 0.0
         else:
             x[n : 3 * n, 0] = np.concatenate([tan.ravel() for tan in tangents])
         K = ((1 + x[n : 2 * n] ** 2) * (1 + x[2 * n : 3 * n] ** 2)) ** -0.5
-        missed = self._residual(self.doubles, Guess(x, contact, units), support, 1.0, beta)
+        missed = self._residual(self.doubles, Guess(x, contact, units), support, terms)
         v = (missed[:n] / K)[:, 0] * np.where(contact, length, units[2])
         approach = float(v @ (f / f.sum()))
         x[:n, 0] += np.where(contact, 0.0, abs(v - approach) / units[2])
         x[-1] = approach / length
         return Guess(x, contact, units)
 
-    def _residual(self, on: dict[str, Exact], state: Guess, support: Mask, load: Any, beta: Any) -> Exact:
-        """Return the residuals of Eqs (6) and (7), of the tangents, and of Eq. (2); a column for each of
-        ``state.x``."""
+    def _residual(self, on: dict[str, Exact], state: Guess, support: Mask, terms: Terms) -> Exact:
+        """Return residuals of Eqs (6), (7), the tangents and Eq. (2); a column for each ``state.x``."""
         n, (peak, length, room) = self.n, state.units
         x, inside = state.x, state.contact[:, None].astype(float)
         f, gap = x[:n] * inside, x[:n] * (1 - inside)
         tan_x, tan_y = x[n : 2 * n], x[2 * n : 3 * n]
         cos_x, cos_y = (1 + tan_x * tan_x) ** -0.5, (1 + tan_y * tan_y) ** -0.5
-        r = f * beta + support[:, None] * (self.scene.friction.tau / peak)
+        r = f * terms.beta + support[:, None] * (terms.tau / peak)
         down, along, across = f, r, f * 0
         if self.correction:
             down, along, across = f - r * tan_x, r + f * tan_x, f * tan_y
@@ -174,14 +193,13 @@ class Oracle:
         if self.approach is not None:
             return np.concatenate([contact, *slopes, x[-1:] - on["approach"][0] / length])
         carried = np.sum((f - r * tan_x) * cos_x * cos_y, axis=0, keepdims=True)
-        return np.concatenate([contact, *slopes, carried * (on["dA"][0] * peak / load) - 1])
+        return np.concatenate([contact, *slopes, carried * (on["dA"][0] * peak / terms.load) - 1])
 
-    def _step(self, state: Guess, support: Mask, load: Any, beta: Any, residual: Array) -> Array:
-        """Return Newton's step for a residual: the Jacobian by complex steps, its rows and columns in one
-        size."""
+    def _step(self, state: Guess, support: Mask, terms: Terms, residual: Array) -> Array:
+        """Return Newton's step for a residual: the Jacobian by complex steps, rows and columns scaled."""
         size = len(state.x)
         shifted = state.x.astype(float) + 1j * TINY * np.eye(size)
-        jacobian = self._residual(self.doubles, state._replace(x=shifted), support, load, beta).imag / TINY
+        jacobian = self._residual(self.doubles, state._replace(x=shifted), support, terms).imag / TINY
         rows = 1 / np.abs(jacobian).max(axis=1)
         columns = 1 / np.abs(jacobian * rows[:, None]).max(axis=0)
         try:
@@ -191,8 +209,7 @@ class Oracle:
         return np.asarray(columns * step)
 
     def _moved(self, state: Guess, step: Exact, one: bool) -> tuple[Guess, bool]:
-        """Return the state after a step; elements of negative pressure or gap are exchanged, all or the last
-        one."""
+        """Return the state after a step; elements of negative pressure or gap change, all or the last."""
         x = state.x + step[:, None]
         y = x[: self.n, 0]
         bad = np.zeros(self.n, dtype=bool)
@@ -205,41 +222,51 @@ class Oracle:
         contact = state.contact ^ bad
         return state._replace(x=x, contact=contact if contact.any() else bad), bool(bad.any())
 
-    def _newton(self, state: Guess, support: Mask | None, load: Any, beta: Any) -> Guess:
+    def _settled(self, state: Guess, step: Exact, share: float) -> bool:
+        """Return whether a step is at most that share of pressures, of gaps, of tangents and of the approach.
+
+        Each of the four has its own size: a large one excuses no step of another. Tangents count against 1 at
+        least, gaps and approach against the displacement under the peak.
+        """
+        n, x, (_, length, room) = self.n, abs(state.x[:, 0]), state.units
+        peak = max(x[:n][state.contact])
+        gap = max(np.where(state.contact, peak * length / room, x[:n]))
+        sizes = np.where(state.contact, peak, gap)
+        tangent, approach = max(1, max(x[n:-1])), max(x[-1], peak)
+        return bool((abs(step) <= share * np.concatenate([sizes, [tangent] * (2 * n), [approach]])).all())
+
+    def _newton(self, state: Guess, support: Mask | None, terms: Terms) -> Guess:
         """Solve in doubles; tau acts on the support, by default on the contact."""
         for count in range(STEPS):
             on = state.contact if support is None else support
             with np.errstate(all="ignore"):
-                residual = self._residual(self.doubles, state, on, load, beta)[:, 0]
+                residual = self._residual(self.doubles, state, on, terms)[:, 0]
                 if not np.isfinite(residual).all():
                     raise NotSettled("slopes of the exact state do not settle")
-                step = self._step(state, on, load, beta, residual)
+                step = self._step(state, on, terms, residual)
             state, exchanged = self._moved(state, step, one=count > STEPS // 2)
-            if not exchanged and np.abs(step).max() <= CLOSE * np.abs(state.x).max():
+            if not exchanged and self._settled(state, step, CLOSE):
                 return state
         raise NotSettled("Newton's steps do not end")
 
     def _refined(self, state: Guess, support: Mask) -> Exactly:
         """Return the residuals in digits, steps by the Jacobian in doubles."""
-        load, law = self.scene.load, self.scene.friction
         with mp.workdps(DIGITS):
             state = state._replace(x=_exact(state.x[:, 0])[:, None])
             for _ in range(REFINEMENTS):
-                residual = self._residual(self.exact, state, support, load, law.beta)[:, 0]
+                residual = self._residual(self.exact, state, support, self.own)[:, 0]
                 size = max(abs(residual)) or mp.mpf(1)
-                step = (
-                    _exact(self._step(state, support, load, law.beta, (residual / size).astype(float))) * size
-                )
+                step = _exact(self._step(state, support, self.own, (residual / size).astype(float))) * size
                 state, exchanged = self._moved(state, step, one=False)
-                if not exchanged and max(abs(step)) <= SETTLED * max(abs(state.x[:, 0])):
+                if not exchanged and self._settled(state, step, SETTLED):
                     return self._state(state, support)
         raise NotSettled("refinements of the exact state do not end")
 
     def _state(self, state: Guess, support: Mask) -> Exactly:
-        n, (peak, length, _), law = self.n, state.units, self.scene.friction
+        n, (peak, length, _) = self.n, state.units
         y, tan_x, tan_y = (state.x[k * n : (k + 1) * n, 0] for k in range(3))
         f = y * np.where(state.contact, peak, 0.0)
-        r = f * law.beta + support * law.tau
+        r = f * self.own.beta + support * self.own.tau
         K = ((1 + tan_x * tan_x) * (1 + tan_y * tan_y)) ** -0.5
         margins = [
             min(abs(y[side])) / (max(abs(y[side])) or 1)

@@ -9,13 +9,18 @@ from enum import StrEnum
 
 DIGITS_MOST = 17.0
 """Digits given to an error of exactly zero: a double holds 15.95."""
+NO_DIGITS = 1e-2
+"""Relative error of the input itself from which on nothing is left to judge by."""
+EXISTS = "a state exists: found by continuation"
+"""Note on a state that no solver found."""
 
 
 class Verdict(StrEnum):
     """Verdict on a state. WRONG must never occur: a number with an error, reported as good."""
 
     RIGHT = "right"
-    DETECTED = "detected failure"  # refused by InputError, or a status that says no
+    DETECTED = "detected failure"  # refused, a documented error, or a status that says no
+    UNJUDGED = "unjudged"  # no judge decides: it failed itself, or the input has lost its digits
     WRONG = "wrong"
     CRASH = "crash"  # an exception that nobody foresaw: no wrong number, but no reason either
 

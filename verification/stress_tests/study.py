@@ -14,8 +14,9 @@ from verification.framework.case import jsonable
 from verification.output.provenance import provenance
 from verification.stress_tests import conditioning
 from verification.stress_tests.axes import AXES, states
-from verification.stress_tests.limits import LIMITS, limit_of
-from verification.stress_tests.state import Extreme, Verdict
+from verification.stress_tests.judge import judged
+from verification.stress_tests.limits import LIMITS, limits_of
+from verification.stress_tests.state import Extreme, Judged, Verdict
 
 FORMAT = "rough-friction extremes, version 1"
 Row = dict[str, Any]
@@ -31,20 +32,30 @@ def run_state(unique: str, extreme: Extreme) -> Row:
     started = time.process_time()
     late = OutOfTime(f"no end within {extreme.seconds:g} s of processor time")
     with processor_time(extreme.seconds, late):
-        found = extreme.run()
+        found = judged(extreme.run)
     return {
         "id": unique, "axis": unique.split("/")[0],
         "series": extreme.series, "at": extreme.at, "x": extreme.x,
         **asdict(found), "verdict": found.verdict.value, "digits": found.digits,
-        "kind": kind_of(unique, found.verdict),
+        "kind": kind_of(unique, found),
         "seconds": round(time.process_time() - started, 3),
     }  # fmt: skip
 
 
-def kind_of(unique: str, verdict: Verdict) -> str | None:
-    """Return what stands behind a state that is not solved; None for the others."""
-    limit = None if verdict is Verdict.RIGHT else limit_of(unique)
-    return None if limit is None else limit.kind.value
+def kind_of(unique: str, outcome: Judged) -> str | None:
+    """Return what stands behind a state that is not solved; None where not exactly one limit says it.
+
+    A limit by ids excuses what the solver reports, not a judge that failed.
+    """
+    found = limits_of(unique, outcome)
+    by_rule = outcome.verdict is Verdict.UNJUDGED and any(limit.rule for limit in found)
+    named = len(found) == 1 and (by_rule or outcome.verdict is Verdict.DETECTED)
+    return found[0].kind.value if named else None
+
+
+def unexplained(rows: Iterable[Row]) -> list[str]:
+    """Return the ids of states that are neither right nor of a kind: wrong ones and crashes are always."""
+    return [row["id"] for row in rows if row["verdict"] != Verdict.RIGHT and row["kind"] is None]
 
 
 def run(names: Iterable[str] = (), tick: Callable[[str], None] = lambda _: None) -> list[Row]:
@@ -71,7 +82,7 @@ def summary(rows: Iterable[Row]) -> list[Row]:
     found = []
     for (axis, series), group in groups.items():
         digits = sorted(row["digits"] for row in group if row["verdict"] == Verdict.RIGHT)
-        oracles = dict.fromkeys(row["oracle"] for row in group if row["oracle"] not in ("none", "refused"))
+        oracles = dict.fromkeys(row["oracle"] for row in group if row["oracle"] != "none")
         found.append(
             {
                 "axis": axis, "series": series, "from": group[0]["at"], "to": group[-1]["at"],

@@ -33,10 +33,7 @@ Curves = dict[object, list[Point]]
 
 
 def curves(rows: Sequence[Row], x: str, y: str, by: str | None = None) -> Curves:
-    """Return the curves of column y over column x, one for each value of ``by``.
-
-    Raises `InputError` for a column that is not there, or is not a number (``by``: a text) in all rows.
-    """
+    """Return curves of y over x, one for each ``by``. `InputError` for no such column, or not of numbers."""
     rows = [row | named(row) for row in rows]
     for option, name in (("--x", x), ("--y", y), ("--by", by)):
         _check_column(option, name, rows)

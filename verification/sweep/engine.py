@@ -79,10 +79,7 @@ class Sweep:
         return [row | {"seconds": took} for row, took in zip(self.rows, self.solve_seconds, strict=True)]
 
     def to_dataframe(self) -> Any:
-        """Return the table as a `pandas.DataFrame`, a column for each parameter varied by its full name too.
-
-        Units are in ``attrs["units"]``. Raises `InputError` where pandas is not installed.
-        """
+        """Return a `pandas.DataFrame` by full names, ``attrs["units"]`` beside. InputError without pandas."""
         from verification.sweep.export import to_dataframe
 
         return to_dataframe(self.table())
@@ -151,7 +148,6 @@ def _failure(done: Future[tuple[Row, float]]) -> BaseException | None:
 
 
 def _through(executor: Executor, runs: Iterable[Run]) -> Done:
-    """Yield runs as they finish."""
     waiting = {executor.submit(execute, run.inputs): run for run in runs}
     for future in as_completed(waiting):
         yield waiting.pop(future), future
@@ -159,8 +155,7 @@ def _through(executor: Executor, runs: Iterable[Run]) -> Done:
 
 @contextmanager
 def _here(workers: int) -> Iterator[Executor]:
-    """Yield this process, or fresh interpreters ('spawn') with one thread each, that end when this process
-    does."""
+    """Yield this process, or fresh interpreters ('spawn') with one thread each, that end with it."""
     if workers == 0:
         thread = ThreadPoolExecutor(1)
         try:
@@ -199,7 +194,6 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def _cluster(address: str) -> Iterator[Executor]:
-    """Use the workers of a running dask.distributed scheduler."""
     try:
         import distributed
 

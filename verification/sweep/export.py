@@ -52,10 +52,7 @@ def header(name: str) -> str:
 
 
 def to_dataframe(rows: Sequence[Row]) -> Any:
-    """Return a `pandas.DataFrame`; parameters varied by their full names are columns of their own.
-
-    Raises InputError where pandas is not installed.
-    """
+    """Return a `pandas.DataFrame`, full names as own columns; InputError without pandas."""
     try:
         import pandas
     except ModuleNotFoundError as missing:

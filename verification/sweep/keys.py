@@ -93,8 +93,7 @@ def uses(kind: str) -> dict[str, str]:
 
 
 def _study() -> tuple[Key, ...]:
-    """Return the keys of the file itself; defaults are those of the study that a file of two lines
-    becomes."""
+    """Return the file's own keys; defaults are those of the study that two lines become."""
     made = study_from_dict({"scene": _BASE["scene"], "vary": _BASE["vary"]})
     defaults = {name: as_toml(getattr(made, name)) for name in ("realisations", "first_seed", "normalise")}
     defaults |= {"scene": REQUIRED, "vary": "-", "solve": "-"}

@@ -43,11 +43,7 @@ def check(study: Study) -> None:
 
 
 def unusable_files(study: Study) -> dict[tuple[str, str], str]:
-    """Return why varied files are refused, by axis and path.
-
-    Each is read and sampled, beside the other axes' limits.
-    Raises the first one's InputError where all of them are refused.
-    """
+    """Return why varied files are refused, by axis and path. Raises the first InputError where all are."""
     refused: dict[tuple[str, str], InputError] = {}
     for axis, path in _files(study):
         others = {name: values for name, values in study.vary.items() if not name.endswith(".path")}
@@ -93,8 +89,7 @@ def covered_size(study: Study) -> tuple[tuple[float, float], str]:
 
 
 def _closest(study: Study) -> Iterator[Scene]:
-    """Yield the scenes that come closest to a limit of their heights; slides of one scene share its
-    surfaces."""
+    """Yield the scenes closest to a limit of their heights; slides of one scene share its surfaces."""
     turns = study.vary.get("sliding_direction", (study.scene["sliding_direction"],))
     nearest = (max(turns, key=lambda phi: abs(component(phi))) for component in (math.cos, math.sin))
     directions = tuple(dict.fromkeys(nearest))
@@ -108,8 +103,7 @@ def _closest(study: Study) -> Iterator[Scene]:
 
 
 def _ends(axis: str, values: Sequence[Any]) -> tuple[Any, ...]:
-    """Return the values of an axis that come closest to a limit: all files; one of what limits do not depend
-    on."""
+    """Return an axis' values closest to a limit: all files; one where limits do not depend on it."""
     if axis.endswith(".path"):
         return tuple(values)
     if axis.endswith(".seed"):

@@ -43,7 +43,6 @@ def points_of(rows: Sequence[Row]) -> dict[tuple[object, ...], list[Row]]:
 
 
 def _without_seeds(row: Row) -> Row:
-    """Return the row without varied seeds, which make realisations and no other point."""
     if not row.get("parameters"):
         return row
     kept = {

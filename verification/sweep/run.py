@@ -85,9 +85,7 @@ class Run:
 
 @cache
 def code_digest() -> str:
-    """Return the digest of every source file of `refimpl` in this process's installation, and of the
-    libraries' versions that its last digits depend on.
-    """
+    """Return the digest of this installation's `refimpl` sources, and of the libraries' versions."""
     root = Path(rf.__file__).parent
     digest = hashlib.sha256()
     for path in sorted(root.rglob("*.py")):

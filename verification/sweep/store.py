@@ -75,11 +75,7 @@ class Store:
 
 
 def checksum(values: Sequence[Any]) -> str:
-    """Return 64 bits of the SHA-256 of a row's values; floats by their shortest exact form.
-
-    >>> checksum(["key", 1.0, None]) == checksum(["key", 1, None])
-    False
-    """
+    """Return 64 bits of the SHA-256 of a row's values; floats by their shortest exact form."""
     return hashlib.sha256(json.dumps(values, default=repr).encode()).hexdigest()[:16]
 
 
@@ -115,7 +111,6 @@ def open_store(path: Path) -> Iterator[Store]:
 
 
 def _make(path: Path) -> None:
-    """Make the file at the path where there is none."""
     _check_places(path)
     try:
         path.open("ab").close()
@@ -142,14 +137,12 @@ def _check_places(path: Path) -> None:
 
 
 def _begin(path: Path) -> bytes:
-    """Return the first bytes of a file; none where there is none, or where it cannot be read."""
     with suppress(OSError), open(path, "rb") as file:
         return file.read(len(_DATABASE))
     return b""
 
 
 def _connect(path: Path) -> sqlite3.Connection:
-    """Return the database, made if it is empty, if it is what this module writes."""
     address = f"{path.as_uri()}?mode=rw"  # never ":memory:"
     try:
         connection = sqlite3.connect(address, uri=True, timeout=BUSY_SECONDS, isolation_level=None)
@@ -170,7 +163,6 @@ def _connect(path: Path) -> sqlite3.Connection:
 
 
 def _check(connection: sqlite3.Connection, path: Path) -> None:
-    """Raise InputError for another schema, as of another program or version, or damage."""
     if _schema(connection) != [("table", "runs", "runs", f"CREATE TABLE {_TABLE}")]:
         raise _refusal(path, "a file of 'sweep' with its table and nothing else")
     (found,) = connection.execute("pragma integrity_check(1)").fetchone()

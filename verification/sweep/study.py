@@ -150,13 +150,11 @@ class Study:
 
 
 def _random(body: Table) -> Table:
-    """Return the random part of a body; an empty table without one."""
     return next((part for part in body["surface"] if part["kind"] in RANDOM), {})
 
 
 def _length(scene: Table) -> float | None:
-    """Return the correlation length of the scene's roughness; None without one, or where there are
-    several."""
+    """Return the correlation length of the scene's roughness; None without one, or with several."""
     found = [_random(scene[name]).get("correlation_length") for name in ("upper", "lower")]
     lengths = [length for length in found if length is not None]
     same = lengths and isinstance(lengths[0], float) and lengths.count(lengths[0]) == len(lengths)

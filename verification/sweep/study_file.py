@@ -39,18 +39,13 @@ def read_study(path: str | Path, *, keep_going: bool = False) -> Study:
 
 
 def shipped_studies() -> tuple[str, ...]:
-    """Return the names of the studies that ship as package data.
-
-    >>> "table3" in shipped_studies()
-    True
-    """
+    """Return the names of the studies that ship as package data."""
     folder = resources.files("verification").joinpath("studies")
     return tuple(sorted(item.name[:-5] for item in folder.iterdir() if item.name.endswith(".toml")))
 
 
 def study_from_dict(table: Mapping[str, Any], folder: Path = Path(), *, keep_going: bool = False) -> Study:
-    """Return the study of a parsed TOML table, refused for all that its runs would be refused for
-    (`posable`)."""
+    """Return the study of a parsed TOML table, refused for all that its runs would be (`posable`)."""
     _refuse_unknown("study", table, KEYS)
     name = table.get("scene")
     if not isinstance(name, str) or not name:
@@ -93,8 +88,7 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path(), *, keep_goi
 
 
 def _with_usable_files(study: Study, keep_going: bool) -> Study:
-    """Return the study without the varied files that are refused; without ``keep_going`` all of them at
-    once."""
+    """Return the study without refused files; without ``keep_going`` all are refused at once."""
     unusable = posable.unusable_files(study)
     if unusable and not keep_going:
         said = "".join(f"\n  {reason}" for reason in unusable.values())
@@ -173,7 +167,6 @@ def _check_settings(settings: Mapping[str, Any]) -> None:
 
 
 def _by_axis(vary: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the table with the full names of tau and beta as the axes that they are."""
     axes = {f"friction.{axis}": axis for axis in FRICTION_AXES}
     for name, axis in axes.items():
         if name in vary and axis in vary:
@@ -192,7 +185,6 @@ def _refuse_doubles(vary: Mapping[str, Any]) -> None:
 
 
 def _values(axis: str, values: object, folder: Path) -> tuple[Any, ...]:
-    """Return the values of an axis; files relative to the study's folder, where they are found there."""
     if axis.endswith(".path"):
         return _paths(axis, values, folder)
     allowed = "a finite number, or a list of different ones"

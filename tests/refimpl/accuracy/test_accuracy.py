@@ -11,8 +11,6 @@ import pytest
 
 import refimpl as rf
 from refimpl.accuracy.iteration_error import CORRECTED, iteration_parts
-from refimpl.accuracy.refinement import FIRST_GRIDS
-from refimpl.solution.cost import total_cost
 from refimpl.solution.quantities import REPORTED
 from tests.refimpl.states import state_of
 from verification.coverage.class_scenes import Wave
@@ -26,17 +24,13 @@ def sliding_ball(rms: float, seed: int, load: float = 70.0) -> rf.Scene:
     return replace(rf.read_scene("table1-smooth"), lower=rf.Body(COPPER, rough), load=load)
 
 
-HERTZ = rf.read_scene("hertz")
-
-
 def bar(s: rf.Solution, name: str) -> float:
     """Sum of a number's parts."""
     return math.fsum(s.uncertainty[name].values())
 
 
-@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.nightly)])
-def test_the_bar_is_met_and_holds_the_error(seed: int) -> None:
-    scene = sliding_ball(0.3e-6, seed)
+def test_the_bar_is_met_and_holds_the_error() -> None:
+    scene = sliding_ball(0.3e-6, 1)
     found = rf.solve(scene, accuracy=0.05)
     assert found.status in (rf.Status.CONVERGED, rf.Status.CYCLED)
     assert bar(found, "friction_coefficient_corrected") <= 0.05 * found.friction_coefficient_corrected
@@ -44,31 +38,6 @@ def test_the_bar_is_met_and_holds_the_error(seed: int) -> None:
     finer = rf.solve(scene, grid=2 * found.grid.shape[0], tolerance=1e-6)
     for name in ("friction_coefficient_corrected", "friction_coefficient", "contact_area", "max_pressure"):
         assert abs(getattr(found, name) - getattr(finer, name)) <= bar(found, name), name
-
-
-def test_the_cost_is_that_of_all_grids() -> None:
-    """Each grid is solved from the one before, as by `solve` with a start."""
-    scene, words = sliding_ball(0.3e-6, 1), {"coupled": True, "oblique": True, "tilted": True}
-    lines: list[str] = []
-    found = rf.solve(scene, accuracy=0.02, quantity="contact_area", **words, progress=lines.append)
-    sizes = [int(size) for size in dict.fromkeys(line.partition(" x ")[0] for line in lines)]
-    assert tuple(sizes[:2]) == FIRST_GRIDS
-    assert len(sizes) > 2
-    solved: list[rf.Solution] = []
-    for M in sizes:
-        start = solved[-1] if solved else None
-        solved.append(rf.solve(scene, M, **words, start=start, tolerance=found.details.tolerance))
-    assert np.array_equal(found.pressure, solved[-1].pressure)
-    expected = total_cost(solution.cost for solution in solved)
-    assert found.cost.applications == expected.applications
-    assert found.cost.iterations == expected.iterations
-    assert found.cost.point_logs == pytest.approx(expected.point_logs)
-
-
-@pytest.mark.parametrize(("scene", "quantity"), [(sliding_ball(0.3e-6, 1), "contact_area"), (HERTZ, None)])
-def test_the_area_counts_on_request_and_without_friction(scene: rf.Scene, quantity: str | None) -> None:
-    found = rf.solve(scene, accuracy=0.05, quantity=quantity)  # type: ignore[arg-type]  # one of the quantities
-    assert bar(found, "contact_area") <= 0.05 * found.contact_area
 
 
 @pytest.mark.parametrize(
@@ -125,17 +94,20 @@ def test_a_looser_certificate_has_a_larger_iteration_part() -> None:
         assert missed <= part + 1e-8 * abs(getattr(tight, name)), name
 
 
-def test_a_sum_over_slopes_that_cancels_is_no_better_known_than_its_terms() -> None:
-    """Without friction F is slopes alone, a vector's component: there is a direction in which it is zero."""
-    scene = replace(sliding_ball(0.3e-6, 1), friction=rf.Friction())
-    ahead = rf.solve(scene, grid=64, oblique=True, tolerance=1e-12)
-    across = math.atan2(-ahead.friction_force, ahead.binormal_force)
-    scene = replace(scene, sliding_direction=across)
-    loose, tight = (rf.solve(scene, grid=64, oblique=True, tolerance=t) for t in (1e-3, 1e-12))
-    assert abs(tight.friction_force) < 1e-6 * abs(tight.binormal_force)
-    for name in ("friction_coefficient", "friction_force"):
-        missed = abs(getattr(loose, name) - getattr(tight, name))
-        assert 0.01 * abs(getattr(loose, name)) < missed < loose.uncertainty[name]["iteration"]
+def test_against_hertz_errors_of_corrected_friction_are_a_fifth_and_each_within_its_bar() -> None:
+    """mu of a flat ball is ``tau pi a^2 / P + beta``; domains of several sizes move its edge."""
+    tau, beta, radius, load = 2e8, 0.1, 0.01, 40.0
+    modulus = STEEL.E / (2 * (1 - STEEL.nu**2))
+    exact = tau * math.pi * (3 * load * radius / (4 * modulus)) ** (2 / 3) / load + beta
+    ball, flat, law = rf.Body(STEEL, rf.Sphere(radius)), rf.Body(STEEL, rf.Flat()), rf.Friction(tau, beta)
+    sides = (1e-3 * (1 + 0.013 * k) for k in range(12))
+    solved = [rf.solve(rf.Scene(ball, flat, law, load, side), 48, oblique=False) for side in sides]
+    raw = np.array([s.friction_coefficient - exact for s in solved])
+    corrected = np.array([s.friction_coefficient_corrected - exact for s in solved])
+    bars = [s.error("friction_coefficient_corrected") for s in solved]
+    assert np.sqrt(np.mean(corrected**2)) < np.sqrt(np.mean(raw**2)) / 5
+    assert np.all(np.abs(corrected) <= bars)
+    assert all(bar < s.error("friction_coefficient") for s, bar in zip(solved, bars, strict=True))
 
 
 SIDE = 1e-3
@@ -145,12 +117,12 @@ AMPLITUDE = 0.2e-6
 
 @pytest.mark.parametrize(("axis", "share"), [(0, 0.2), (1, 0.5)])
 def test_bars_of_grooves_hold_the_exact_numbers(axis: int, share: float) -> None:
-    """Westergaard's strips at eight places within an element: A, corrected A, mu and the approach."""
+    """Westergaard's strips at four places within an element: A, corrected A, mu and the approach."""
     flattening = math.pi * MODULUS * AMPLITUDE / SIDE
     mean = flattening * math.sin(math.pi * share / 2) ** 2
     exact = Exact(mean_pressure=mean, amplitude=AMPLITUDE, wavelength=SIDE, modulus=MODULUS)
     tau, area = 0.1 * mean / share, exact.contact_fraction * SIDE**2
-    for place in range(8):
+    for place in range(0, 8, 2):
         wave = Wave(AMPLITUDE, (1 - axis, axis), 2 * math.pi * (0.13 + place / 8 / 64))
         scene = rf.Scene(
             rf.Body(STEEL, rf.Flat()), rf.Body(COPPER, wave), rf.Friction(tau=tau, beta=0.08),
@@ -164,20 +136,6 @@ def test_bars_of_grooves_hold_the_exact_numbers(axis: int, share: float) -> None
             "approach": exact.approach - AMPLITUDE,
         }.items():
             assert abs(getattr(s, name) - number) <= bar(s, name), (place, name)
-
-
-@pytest.mark.parametrize("grid", [64, pytest.param(128, marks=pytest.mark.nightly)])
-def test_bars_hold_where_a_lay_is_along_the_grid(grid: int) -> None:
-    """Under a ball, against four times the elements: in five of six surfaces at least."""
-    held = 0
-    for seed in range(6):
-        lay = rf.GaussianRoughness(0.5e-6, (500e-6, 60e-6), seed=seed, lay=math.pi / 2)
-        ball, friction = rf.Body(STEEL, rf.Sphere(0.14)), rf.Friction(tau=15e6, beta=0.08)
-        scene = rf.Scene(ball, rf.Body(COPPER, lay), friction, 70.0, 1.6e-3)
-        coarse, fine = rf.solve(scene, grid), rf.solve(scene, 4 * grid)
-        names = ("contact_area", "friction_coefficient")
-        held += all(abs(getattr(coarse, n) - getattr(fine, n)) <= bar(coarse, n) for n in names)
-    assert held >= 5
 
 
 def rough_map(points: int) -> np.ndarray:
@@ -208,13 +166,6 @@ def test_an_accuracy_does_not_end_above_the_pitch_of_the_data() -> None:
     assert any("points of the data" in line for line in s.warnings)
 
 
-def test_limits_of_a_refinement_end_it_with_the_best_grid_within_them() -> None:
-    s = rf.solve(MAP, accuracy=1e-4, max_grid=96)
-    assert s.status is rf.Status.ACCURACY_NOT_REACHED
-    assert s.details.certified
-    assert max(s.grid.shape) <= 96
-
-
 def test_contact_that_fills_the_window_has_no_error_bar() -> None:
     """Hertz's radius is 165 um, half of the domain 50 um: both stand in the warning."""
     radius = 165e-6
@@ -228,33 +179,3 @@ def test_contact_that_fills_the_window_has_no_error_bar() -> None:
     refined = rf.solve(full, accuracy=0.01)
     assert refined.status is rf.Status.ACCURACY_NOT_REACHED
     assert max(refined.grid.shape) == 64
-
-
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        ({"lower": rf.Body(rf.Material(E=200.0, nu=0.3), rf.Flat()), "load": 1e-3}, "did you mean GPa"),
-        ({"friction": rf.Friction(tau=15e9, beta=0.08)}, "did you mean MPa"),
-        ({"friction": rf.Friction(tau=5e3, beta=0.08)}, "did you mean MPa"),
-        ({"sliding_direction": 45.0}, "did you mean degrees"),
-    ],
-)
-def test_inputs_that_are_seldom_meant_get_a_note_with_help(change: dict[str, object], said: str) -> None:
-    """Every note with its limits: `test_plausibility`."""
-    tau, ball = rf.Friction(tau=15e6, beta=0.08), rf.Body(STEEL, rf.Sphere(0.14))
-    usual = rf.Scene(ball, rf.Body(COPPER, rf.Flat()), tau, 70.0, 1.6e-3)
-    assert not any(said in line for line in rf.solve(usual, 16).warnings)
-    assert any(said in line for line in rf.solve(replace(usual, **change), 16, plastic=False).warnings)
-
-
-def test_the_gap_is_nowhere_negative_beyond_the_penetration() -> None:
-    """On slopes the surfaces' own distance is; with a cap the indentation is added."""
-    steep = rf.GaussianRoughness(2e-6, 60e-6, seed=3)
-    for hardness in (None, 0.8e9):
-        body = rf.Body(rf.Material(E=118e9, nu=0.3, hardness=hardness), steep)
-        scene = rf.Scene(rf.Body(STEEL, rf.Sphere(0.05)), body, rf.Friction(tau=15e6, beta=0.08), 20.0, 1e-3)
-        s = rf.solve(scene, 64)
-        allowed = (s.certificate.penetration + 1e-12) * s.approach
-        assert s.gap.min() >= -allowed
-        assert np.abs(s.gap[s.contact]).max() <= 1e-6 * s.approach
-        assert s.details.separation.min() < -1e-4 * s.approach

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import math
-import re
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from scipy import optimize, stats
 
 from refimpl.accuracy.bayesian_line import Bias, Intercept, Prior, fit_line
@@ -23,13 +20,6 @@ def test_a_bar_is_exceeded_by_5_percent_of_a_normal_distribution(distance: float
     bar = Intercept(2.0, 0.5).error_bound(2.0 + 0.5 * distance) / 0.5 * stats.norm.ppf(0.975)
     shift = distance * stats.norm.ppf(0.975)
     assert stats.norm.sf(bar - shift) + stats.norm.sf(bar + shift) == pytest.approx(0.05, rel=1e-6)
-
-
-def test_finer_grids_are_foretold_a_nearer_number_and_a_shorter_spread() -> None:
-    """By the first and the second of its orders, each in its own way."""
-    still = Intercept(1.0, 0.8, orders=(1.0, 2.0))
-    assert still.predicted_bound(1.0, 0.25) == pytest.approx(0.05)
-    assert still.predicted_bound(21.0, 0.25) == pytest.approx(Intercept(1.0, 0.05).error_bound(6.0))
 
 
 @pytest.mark.parametrize("grids", [1, 2, 3])
@@ -133,19 +123,3 @@ def test_a_number_has_the_digits_that_its_bar_leaves(
 def test_half_of_the_value_is_the_largest_usable_bar(error: float, named: str) -> None:
     assert verdict(error, -1.0) == named
     assert usable(error, 1.0) is not bool(named)
-
-
-@given(st.floats(1e-12, 1e12), st.floats(1e-7, 0.999))
-def test_rounding_is_within_half_a_digit_of_the_bar(value: float, share: float) -> None:
-    """The first digit of a bar is 2 or more, or there are two: the bar is off by a fourth, the value by
-    another of it; six digits of the value are enough for any bar.
-    """
-    error = value * share
-    assert abs(float(digits_of(value, error)) - value) <= max(0.2565 * error, 5.001e-6 * value)
-    assert abs(float(bar_of(error)[3:]) - error) <= 0.2565 * error
-
-
-@given(st.floats(1e-9, 1e9), st.floats(1.0, 1e6))
-def test_a_number_without_a_meaning_has_two_digits(value: float, share: float) -> None:
-    digits = digits_of(value, value * share).partition("e")[0].replace(".", "").strip("0")
-    assert re.fullmatch(r"\d{1,2}", digits)

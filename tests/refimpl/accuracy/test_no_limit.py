@@ -42,7 +42,6 @@ PHASES = (4 * (np.arange(96) + 0.5) / 96) % 1  # places within four equal groove
     [
         (np.clip(np.abs(PHASES - 0.5) - 0.25, -0.1, 0.1), 2.0),  # trapezoids, whose flats end as punches do
         (np.abs(PHASES - 0.5), 20.0),  # roofs, whose crest lies between two elements
-        (np.abs(np.roll(4 * np.arange(96) / 96, 5) % 1 - 0.5), 20.0),  # on one
     ],
 )
 def test_a_peak_at_a_sharp_edge_or_crest_is_open(profile: Array, load: float) -> None:
@@ -101,18 +100,9 @@ def test_first_contact_on_a_sharp_crest_lies_above_the_parabola() -> None:
     """The bar of a smooth peak was 1.7 times too short."""
     rigid = rf.Body(rf.Material(E=math.inf, nu=0.3), rf.Sphere(0.05))
     scene = rf.Scene(rigid, rf.Body(POLYMER, Roof()), rf.Friction(0.0, 0.1), load=2.0, side=SIDE)
-    coarse, fine = rf.solve(scene, 48), rf.solve(scene, 384)
+    coarse, fine = rf.solve(scene, 48), rf.solve(scene, 192)
     off = abs(coarse.approach - fine.approach)
     assert off < coarse.error("approach") < 5 * off
-
-
-def test_a_transverse_force_that_symmetry_makes_zero_keeps_its_scatter() -> None:
-    """Grooves across sliding; the small-slope approximation has no transverse force at all."""
-    grooves = rf.ArraySurface(1e-5 * np.cos(2 * np.pi * PHASES)[:, None] * np.ones(96))
-    scene = pressed(20.0, grooves, rf.Material(E=1e9, nu=0.3), periodic=True)
-    s, flat = (rf.solve(scene, 96, oblique=oblique) for oblique in (True, False))
-    assert abs(s.binormal_force) < s.uncertainty["binormal_force"]["discretisation"] < 0.05 * s.normal_force
-    assert flat.uncertainty["binormal_force"]["discretisation"] == flat.binormal_force == 0
 
 
 @pytest.mark.parametrize("load", [0.01, 1e-6])
@@ -141,18 +131,6 @@ def test_a_plastic_area_that_no_element_shows_is_bounded_by_the_pressures_bar() 
     assert far.error("plastic_area") < near.grid.element_area
     without_cap = rf.solve(near.details.evidence.scene, 24, plastic=False)
     assert without_cap.error("plastic_area") >= near.error("plastic_area")
-
-
-def test_slopes_of_full_periodic_contact_leave_the_approach_open() -> None:
-    rough = rf.GaussianRoughness(4e-6, 0.2e-3, seed=2)
-    scene = replace(
-        pressed(2e4, rough, rf.Material(E=1e9, nu=0.3), periodic=True), friction=rf.Friction(1e6, 0.3)
-    )
-    solved = {M: rf.solve(scene, M) for M in (32, 64, 128)}
-    assert solved[32].contact_area_share == 1
-    limit = (4 * solved[128].approach - solved[64].approach) / 3
-    for M in (32, 64):
-        assert abs(solved[M].approach - limit) <= solved[M].error("approach") < abs(limit)
 
 
 def test_a_refinement_returns_its_best_finished_grid(monkeypatch: pytest.MonkeyPatch) -> None:

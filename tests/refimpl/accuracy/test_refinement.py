@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import partial
-from inspect import unwrap
 
-import numpy as np
 import pytest
 
 import refimpl as rf
@@ -83,19 +80,6 @@ def test_a_refused_grid_is_replaced_by_a_coarser_one_and_the_end_has_a_reason() 
     assert "96" in ended.refusal
 
 
-def test_a_stricter_demand_ends_on_no_coarser_grid_within_limits() -> None:
-    """Bars that fall by h, half of the number at 64 elements: 0.07 takes 512, 0.02 more than are allowed."""
-
-    def result_at(M: int) -> GridFeatures:
-        if M > 512:
-            raise rf.InputError("grid", M, "at most 512 elements a side")
-        return replace(made_up(M), parts={"contact_area": {"neglected": 32 / M * AREA_LIMIT}})
-
-    ends = [refine_until(result_at, accuracy, "contact_area") for accuracy in (0.07, 0.02)]
-    assert [end.results[-1].grid.shape[0] for end in ends] == [512, 512]
-    assert [bool(end.refusal) for end in ends] == [False, True]
-
-
 @pytest.mark.parametrize(("power", "grids"), [(0.0, 3), (0.1, 3), (-1.0, 4), (-0.5, 5)])
 def test_what_the_active_set_of_tau_leaves_open_ends_the_refinement_unless_finer_grids_leave_less(
     power: float, grids: int
@@ -112,33 +96,6 @@ def test_what_the_active_set_of_tau_leaves_open_ends_the_refinement_unless_finer
     assert len(asked) == grids
     assert ("tau's active set" in found.refusal) is (power >= 0)
     assert (relative_bound(found.results, "max_pressure") <= 0.01) is (power < 0)
-
-
-def test_an_active_set_that_leaves_less_open_than_the_grid_does_not_end_the_refinement() -> None:
-    """0.6 % on all grids where 0.5 % is asked for: grids are refined until the rest of the bar is less."""
-
-    def result_at(M: int) -> GridFeatures:
-        return replace(made_up(M), parts={"contact_area": {"active set": 0.006 * AREA_LIMIT}})
-
-    found = refine_until(result_at, 0.005, "contact_area", grid_sizes=(80, 640))
-    assert "tau's active set" in found.refusal
-    assert [result.grid.shape[0] for result in found.results] == [32, 64, 80, 640]
-
-
-@pytest.mark.parametrize(("share", "finest"), [(0.02, 384), (0.005, 2048)])
-def test_data_that_leave_more_open_than_the_accuracy_end_at_four_elements_between_their_points(
-    share: float, finest: int
-) -> None:
-    """Ninety-six points a side; where the data leave less, what is left is the grid's, and finer grids do."""
-
-    def result_at(M: int) -> GridFeatures:
-        own = {"contact_area": {"data": share * AREA_LIMIT / min(M / 96, 1.0)}}
-        return replace(made_up(M), parts=own)
-
-    data = DataShares(lambda M: 1 / min(M / 96, 1.0), finest=4.0 * 96)
-    found = refine_until(result_at, 0.0055, "contact_area", grid_sizes=(384, 2048), data=data)
-    assert found.results[-1].grid.shape[0] == finest
-    assert ("points of the data" in found.refusal) is (share > 0.0055)
 
 
 def test_neglected_terms_come_back_once_they_are_in_the_way() -> None:
@@ -170,21 +127,3 @@ def test_what_no_grid_reduces_is_summed_and_ends_the_refinement_with_names_and_s
 def test_nothing_in_contact_ends_the_refinement() -> None:
     apart = replace(made_up(64), numbers=dict.fromkeys(REPORTED, 0.0), edge=0.0)
     assert len(refine_until(lambda M: apart, 0.01, "contact_area").results) == len(FIRST_GRIDS)
-
-
-def test_an_accuracy_that_a_lone_peak_rules_out_ends_with_a_note(monkeypatch: pytest.MonkeyPatch) -> None:
-    noise = np.random.default_rng(0).normal(scale=60e-9, size=(128, 128))
-    steel = rf.Material(E=200e9, nu=0.3)
-    scene = rf.Scene(
-        upper=rf.Body(steel, rf.Sphere(radius=0.01)),
-        lower=rf.Body(steel, noise),
-        friction=rf.Friction(),
-        load=0.05,
-        side=50e-6,
-    )
-    # the module of the function in use, whatever has imported it again
-    used = unwrap(rf.solve).__globals__["refined"].__globals__
-    monkeypatch.setitem(used, "refine_until", partial(refine_until, grid_sizes=(64,)))
-    found = rf.solve(scene, accuracy=0.05, quantity="max_pressure")
-    assert found.status is rf.Status.ACCURACY_NOT_REACHED
-    assert "max_pressure is not bounded, let alone to 0.05" in " ".join(found.warnings)

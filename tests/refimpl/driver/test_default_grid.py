@@ -14,8 +14,6 @@ from refimpl.identification import Row, identify
 from refimpl.sensitivities.surface_verdict import surface_verdict
 from tests import plate
 from verification.cli.options import DEFAULT_GRID
-from verification.sweep.engine import sweep
-from verification.sweep.study_file import study_from_dict
 
 POINTS = (24, 18)
 
@@ -52,19 +50,6 @@ def test_solves_identifications_and_verdicts_take_it(tmp_path: Path) -> None:
     rows = [Row(load, 0.2, 0.02) for load in (0.02, 0.04)]
     default, stated = (identify(scene, rows, grid, design=False) for grid in (None, POINTS))
     assert default.values == stated.values
-
-
-def test_a_sweep_solves_every_map_on_its_own_points(tmp_path: Path) -> None:
-    edge, z = 40e-6, 1e-7 * np.cos(np.linspace(0, 9, 32))
-    for name, n in (("coarse", 16), ("fine", 32)):
-        head = f"# Channel: Height\n# Width: {edge} m\n# Height: {edge} m\n# Value units: m"
-        np.savetxt(tmp_path / f"{name}.txt", np.add.outer(z[:n], z[:n]), header=head, comments="")
-    scene = replace(measured(tmp_path), size=(edge, edge))
-    flat = rf.Body(plate.STEEL, rf.MeasuredSurface(tmp_path / "fine.txt"))
-    (tmp_path / "scene.toml").write_text(rf.scene_to_toml(replace(scene, lower=flat)))
-    table = {"scene": "scene.toml", "vary": {"lower.surface[0].path": ["coarse.txt", "fine.txt"]}}
-    done = sweep(study_from_dict(table, tmp_path), tmp_path / "runs.sqlite", workers=1)
-    assert [row["elements_x"] for row in done.rows] == [16, 32]
 
 
 def test_the_dense_method_takes_as_many_elements_as_it_may_by_default() -> None:

@@ -91,14 +91,6 @@ def test_seconds_grow_as_a_transform_does_and_by_a_third_more() -> None:
     assert allowance.expected_seconds(fine) == pytest.approx(3 * 6.56057, rel=1e-6)
 
 
-def test_one_element_says_something_too() -> None:
-    """A grid of one element counts as two: ln 1 is zero. 100 elements of 1.3 * 50 * ln 100 / ln 2."""
-    allowance = Allowance(Limits())
-    allowance.record(rf.Grid((1, 1), (1e-3, 1e-3)), 2.0)
-    expected = 2 * 50 * 6.643856 * 1.3
-    assert allowance.expected_seconds(rf.Grid((10, 10), (1e-3, 1e-3))) == pytest.approx(expected)
-
-
 def test_seconds_spent_and_to_expect_are_within_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     """19.68 s to be expected: after 10 s they fit into 29.7 s, and not into 29.6 s."""
     monkeypatch.setattr(time, "perf_counter", lambda: 100.0)

@@ -42,7 +42,7 @@ def test_the_plastic_indentation_is_measured_from_elements_below_the_hardness(ob
     assert not state.indentation[~state.plastic].any()
 
 
-@pytest.mark.parametrize("direction", [0.0, 0.7, 2.5])
+@pytest.mark.parametrize("direction", [0.0, 2.5])
 def test_shear_on_slopes_that_could_bear_more_than_the_load(direction: float) -> None:
     """Pressures of 1e-4 of tau balance it: a state that holds by the certificate."""
     scene = rf.Scene(
@@ -109,8 +109,3 @@ def test_the_reference_reports_its_own_sums(monkeypatch: pytest.MonkeyPatch) -> 
     assert after.friction_coefficient == before.friction_coefficient
     assert after.certificate.reference > 1e-4
     assert after.status is rf.Status.STAGNATED
-
-
-def test_a_grid_beyond_the_page_is_refused() -> None:
-    with pytest.raises(rf.InputError, match="grid = 65: expected at most 4096 elements by method dense"):
-        rf.solve(rf.read_scene("hertz"), 65, method="dense")

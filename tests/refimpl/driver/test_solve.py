@@ -74,78 +74,15 @@ def test_a_caller_whose_floating_point_errors_raise_gets_the_same_numbers() -> N
     assert found.contact_area == rf.solve(scene, 12).contact_area
 
 
-def test_slope_angles_are_of_the_returned_surface() -> None:
-    s = rf.solve(replace(SMOOTH, sliding_direction=0.7), 24)
-    dx, dy = np.gradient(np.add(*s.surfaces) / 2, *s.grid.spacings)
-    np.testing.assert_allclose(np.tan(s.slopes.theta_x), math.cos(0.7) * dx + math.sin(0.7) * dy, atol=1e-8)
-    np.testing.assert_allclose(np.tan(s.slopes.theta_y), math.cos(0.7) * dy - math.sin(0.7) * dx, atol=1e-8)
-
-
-@pytest.mark.parametrize("limit", [0, 2])
-def test_a_starved_solver_never_claims_convergence(limit: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(constants, "CG_LIMIT", limit)
+def test_a_starved_solver_never_claims_convergence(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(constants, "CG_LIMIT", 2)
     scene = rf.read_scene("metal-polymer")
     s = rf.solve(scene, 24)
     assert s.status in (rf.Status.STAGNATED, rf.Status.ITERATION_LIMIT)
     assert not s.certificate.satisfies(s.details.tolerance)
 
 
-def test_a_tolerance_below_rounding_is_not_claimed() -> None:
-    s = rf.solve(SMOOTH, 24, tolerance=1e-18)
-    assert s.status in (rf.Status.STAGNATED, rf.Status.ITERATION_LIMIT)
-    assert s.certificate.largest < 1e-11
-
-
-@pytest.mark.parametrize("pressure", [30.0, 100.0])
-def test_slopes_that_run_off_end_with_a_status(pressure: float) -> None:
-    """Mean pressures of many E*: no division by a vanished cosine, no bars on numbers without meaning."""
-    bowl = rf.Body(COPPER, rf.GaussianRoughness(rms=0.5e-6, correlation_length=104e-6, seed=3))
-    load = pressure * SMOOTH.materials.reduced_modulus * SMOOTH.side**2
-    s = rf.solve(replace(SMOOTH, lower=bowl, load=load), 5)
-    assert s.status in (rf.Status.STAGNATED, rf.Status.ITERATION_LIMIT)
-
-
-def test_a_coupling_that_cannot_be_lagged_ends_in_time() -> None:
-    s = rf.solve(replace(SMOOTH, friction=rf.Friction(0.0, 1e6), lower=rf.Body(COPPER, rf.Flat())), 8)
-    assert s.status is rf.Status.STAGNATED
-    assert sum(s.cost.applications.values()) < 20_000
-
-
-def test_the_unit_of_pressure_changes_no_bit_of_the_papers_scheme() -> None:
-    """Powers of two scale without rounding; other methods: `verification.properties.equivariance`."""
-
-    def scene(unit: float) -> rf.Scene:
-        lower = rf.Body(rf.Material(2.5e9 * unit, 0.3), rf.GaussianRoughness(0.5e-6, 200e-6, seed=3))
-        upper = rf.Body(rf.Material(200e9 * unit, 0.3), rf.Sphere(0.14))
-        friction = rf.Friction(15e6 * unit, 0.08)
-        return replace(SMOOTH, upper=upper, lower=lower, friction=friction, load=20.0 * unit)
-
-    one, other = (rf.solve(scene(unit), 16, method="paper") for unit in (1.0, 2.0**-40))
-    assert one.status is other.status
-    assert one.cost.iterations == other.cost.iterations
-    assert np.array_equal(other.pressure, 2.0**-40 * one.pressure)
-
-
-def nanoscale(unit: float) -> rf.Scene:
-    """Roughness of 0.2 nm rms on a square of 1 um, by the unit: coarse means lie above first touch."""
-    rough = rf.GaussianRoughness(0.2e-9 * unit, 50e-9 * unit, seed=1)
-    return replace(
-        SMOOTH, upper=rf.Body(STEEL, rough), lower=rf.Body(COPPER, rf.Flat()), side=1e-6 * unit, load=1.0
-    )
-
-
-@pytest.mark.parametrize(("unit", "rounding"), [(2.0**-20, 0.0), (1e3, 1e-9)])
-@pytest.mark.parametrize(("M", "approach"), [(33, 1e-13), (64, 1e-10)])
-def test_lengths_all_scaled_alike_change_no_pressure(
-    M: int, approach: float, unit: float, rounding: float
-) -> None:
-    """Also at an approach that nested grids do not reach. Powers of two scale without rounding."""
-    one, other = (rf.solve(nanoscale(u), M, approach=approach * u) for u in (1.0, unit))
-    assert one.status is other.status is rf.Status.CONVERGED
-    np.testing.assert_allclose(other.pressure, one.pressure, rtol=0, atol=rounding * one.max_pressure)
-
-
-@pytest.mark.parametrize(("tau", "spike"), [(1e7, (0, 1)), (6e7, (0, 0)), (6e7, (1, 0)), (1e7, (1, 1))])
+@pytest.mark.parametrize(("tau", "spike"), [(1e7, (0, 1)), (6e7, (0, 0))])
 def test_a_contact_that_opens_on_the_way_is_found_again(tau: float, spike: tuple[int, int]) -> None:
     """With tau the one element is pushed off, without it is not: both solvers end in the state without."""
     gap = np.full((2, 2), 0.175)

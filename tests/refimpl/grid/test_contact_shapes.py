@@ -27,22 +27,6 @@ def test_a_disc_has_all_eight_images_on_square_elements_and_four_on_oblong_ones(
     assert symmetry_multiplicity(disc(), OBLONG[periodic]) == 4
 
 
-def test_elements_that_are_square_to_rounding_are_square() -> None:
-    """0.3 / 24 and 0.2 / 16 differ in the last bit."""
-    grid = Grid((24, 16), (0.3, 0.2))
-    assert grid.spacings[0] != grid.spacings[1]
-    assert symmetry_multiplicity(disc(24, 16, radius=6.2), grid) == 8
-
-
-@pytest.mark.parametrize("grids", [SQUARE, OBLONG])
-def test_the_place_of_a_contact_does_not_count(grids: dict[bool, Grid]) -> None:
-    half = disc() & (np.arange(24) < 12)
-    here = symmetry_multiplicity(half, grids[False])
-    assert here == symmetry_multiplicity(np.roll(half, (2, 5), (0, 1)), grids[False])
-    around = np.roll(half, (11, 15), (0, 1))  # across both borders
-    assert symmetry_multiplicity(around, grids[True]) == symmetry_multiplicity(half, grids[True])
-
-
 def images(contact: np.ndarray, *, periodic: bool = False) -> float:
     """The multiplicity on square elements."""
     n, m = contact.shape
@@ -115,14 +99,6 @@ def test_a_strip_between_the_axes_is_two_edges_of_as_many_runs_as_it_has_periods
     free = straight_edges(contact, Grid.square(1.0, 30))
     assert free.faces == 0
     assert 0 < free.squares < found.squares
-
-
-def test_a_strip_that_ends_counts_less_what_is_at_its_ends() -> None:
-    """Two rows of ten elements: each long edge meets faces across of length 2 at both ends, 10 - 4; 8 of its
-    faces are beyond the second."""
-    contact = np.zeros((8, 16), dtype=bool)
-    contact[3:5, 2:12] = True
-    assert straight_edges(contact, Grid.square(1.0, 8).refined((8, 16))) == StraightEdges(16, 2, 72)
 
 
 def test_a_staircase_counts_what_a_run_is_longer_than_its_neighbours() -> None:

@@ -13,28 +13,6 @@ from refimpl.grid import Grid, Window, differences, inner, resampled, second_dif
 FREE, PERIODIC = Grid((7, 4), (1.4, 2.0)), Grid((7, 4), (1.4, 2.0), periodic=True)
 
 
-def test_sizes_of_a_rectangle() -> None:
-    assert FREE.spacings == pytest.approx((0.2, 0.5), rel=1e-15)
-    assert FREE.element_area == pytest.approx(0.1, rel=1e-15)
-    assert FREE.element_size == pytest.approx(math.sqrt(0.1), rel=1e-15)
-    assert FREE.size == pytest.approx(math.sqrt(2.8), rel=1e-15)
-    assert FREE.nominal_area == pytest.approx(2.8, rel=1e-15)
-    assert FREE.elements == 28
-    assert FREE.aspect == pytest.approx(2.5, rel=1e-15)
-    assert FREE.zeros.shape == FREE.window.shape == (7, 4)
-    assert str(FREE) == "7 x 4"
-    np.testing.assert_allclose(FREE.x, [0.1, 0.3, 0.5, 0.7, 0.9, 1.1, 1.3], rtol=1e-15)
-    np.testing.assert_allclose(FREE.y, [0.25, 0.75, 1.25, 1.75], rtol=1e-15)
-
-
-def test_a_square_and_a_refined_grid_keep_the_domain() -> None:
-    assert not Grid.square(1.0, 4).periodic
-    square = Grid.square(0.3, 6, periodic=True)
-    assert square == Grid((6, 6), (0.3, 0.3), periodic=True)
-    finer = PERIODIC.refined((21, 8))
-    assert (finer.lengths, finer.periodic, finer.shape) == (PERIODIC.lengths, True, (21, 8))
-
-
 @pytest.mark.parametrize("shape", [(0, 3), (3, -1), (3, 2.0), (True, 3), ("3", 3)])
 def test_counts_must_be_whole_and_positive(shape: tuple[int, int]) -> None:
     with pytest.raises(InputError, match=r"^grid = "):
@@ -65,18 +43,6 @@ def test_the_gradient_of_a_plane(grid: Grid) -> None:
     np.testing.assert_allclose(along_x[inside], 0.3, rtol=1e-12)
     # one element has no neighbour: no slope along that axis
     np.testing.assert_allclose(along_y[inside], -0.2 if grid.shape[1] > 1 else 0.0, rtol=1e-12)
-
-
-def test_the_gradient_of_a_wave_is_that_of_central_differences() -> None:
-    """Their symbol is ``sin(q d) / d``, with the edge d of either axis."""
-    for axis, (n, length) in enumerate(zip(PERIODIC.shape, PERIODIC.lengths, strict=True)):
-        q, d = 2 * np.pi / length, PERIODIC.spacings[axis]
-        s = (np.arange(n) + 0.5) * d
-        wave, slope = np.sin(q * s), np.sin(q * d) / d * np.cos(q * s)
-        along = (1, -1) if axis else (-1, 1)
-        found = PERIODIC.gradient(wave.reshape(along) * np.ones(PERIODIC.shape))
-        np.testing.assert_allclose(found[axis], slope.reshape(along) * np.ones(PERIODIC.shape), atol=1e-14)
-        np.testing.assert_allclose(found[1 - axis], 0, atol=1e-15)
 
 
 def marked(*elements: tuple[int, int]) -> np.ndarray:
@@ -131,15 +97,6 @@ def test_weights_heights_and_frames_where_a_grid_ends_and_where_it_repeats() -> 
     assert free.about_datum(z, 0 * weights)[0, 0] == -2.5
     assert (free.padded(z, 1)[0].tolist(), periodic.padded(z, 1)[0].tolist()) == ([0, 0, 1, 1], [5, 4, 5, 4])
     assert (free.transform_shape, periodic.transform_shape) == ((6, 4), (3, 2))
-
-
-def test_the_bounding_box_of_marked_elements_with_a_margin() -> None:
-    marked = np.zeros((6, 9), dtype=bool)
-    assert Window.around(marked, margin=1) == Window.full((6, 9))
-    marked[2, 1] = marked[3, 4] = True
-    assert Window.around(marked, margin=0) == Window(2, 4, 1, 5)
-    assert Window.around(marked, margin=2) == Window(0, 6, 0, 7)
-    assert Window.around(marked, margin=9) == Window.full((6, 9))
 
 
 def test_values_on_the_grid() -> None:

@@ -14,17 +14,15 @@ from refimpl.errors import InputError
 from refimpl.identification import Row, identify
 from refimpl.identification.design import propose
 from refimpl.identification.ensemble import mean_response, scatter, working_variances
-from refimpl.identification.fit import linear_fit, profile_of, shares
+from refimpl.identification.fit import linear_fit, shares
 from refimpl.identification.forward import COVERAGE, Response
 from refimpl.identification.laws import _law
 from refimpl.identification.profile import Profile
 from refimpl.identification.varying_profile import VaryingProfile
-from refimpl.scene.parameters import with_parameter
 from refimpl.scene.scene_file import read_scene
-from refimpl.sensitivities.sensitivity import friction_slopes
 
 LOADS = 5.0, 10.0, 20.0, 40.0, 80.0
-M = 48
+M = 32
 
 
 def _rows(scene: rf.Scene, relative: float, loads: tuple[float, ...] = LOADS, grid: int = M) -> list[Row]:
@@ -58,37 +56,6 @@ def test_exact_data_give_the_parameters_back(smooth: rf.Scene) -> None:
     assert found.solves <= 7 * len(LOADS)
 
 
-def test_a_fit_without_a_first_guess_converges_where_pressures_are_far_below_the_modulus() -> None:
-    """A first guess of tau above the pressures of 1 mN shears all contact off: no solve converges there."""
-    soft = rf.Material(E=3e9, nu=0.2)
-    scene = rf.Scene(
-        upper=rf.Body(rf.Material(E=200e9, nu=0.3), rf.Sphere(0.1)),
-        lower=rf.Body(soft, rf.Flat()),
-        friction=rf.Friction(tau=1e6, beta=0.1),
-        load=1.0,
-        side=1e-3,
-    )
-    found = identify(_without_friction(scene), _rows(scene, 0.01, (0.001, 0.01, 0.1, 1.0)), M, design=False)
-    assert found.values["tau"].value == pytest.approx(1e6, rel=1e-3)
-    assert found.values["beta"].value == pytest.approx(0.1, rel=1e-2)
-
-
-def test_slopes_are_those_of_finite_differences(smooth: rf.Scene) -> None:
-    scene = replace(smooth, sliding_direction=0.3)
-    solution = rf.solve(scene, M, tolerance=1e-11)
-    for name, step, slope in zip(
-        ("friction.tau", "friction.beta"), (1e3, 1e-5), friction_slopes(scene, solution), strict=True
-    ):
-        value = {"friction.tau": 15e6, "friction.beta": 0.08}[name]
-        ends = [
-            rf.solve(
-                with_parameter(scene, name, value + s * step), M, tolerance=1e-11
-            ).friction_coefficient_corrected
-            for s in (-1, 1)
-        ]
-        assert slope == pytest.approx((ends[1] - ends[0]) / (2 * step), rel=1e-3)
-
-
 def test_the_interval_of_an_inner_optimum_is_the_ellipse() -> None:
     profile = Profile(np.array([10.0, 20.0]), np.array([[1.0, -1.0], [-1.0, 4.0]]))
     assert profile.interval(np.array([1.0, 0.0])) == pytest.approx((10 - 1.96, 10 + 1.96), abs=1e-3)
@@ -107,7 +74,7 @@ def test_the_interval_at_a_bound_is_the_profile() -> None:
 
 
 def test_flat_rough_planes_determine_a_combination(planes: rf.Scene) -> None:
-    found = identify(planes, _rows(planes, 0.02, (4.0, 8.0, 16.0), 128), 128)
+    found = identify(planes, _rows(planes, 0.02, (4.0, 16.0), 64), 64)
     assert not found.is_identified
     assert "not determined apart from beta" in found.warnings[0]
     assert "measure at" in found.warnings[0]
@@ -118,25 +85,17 @@ def test_flat_rough_planes_determine_a_combination(planes: rf.Scene) -> None:
 
 def test_a_tolerance_adds_to_the_uncertainty(smooth: rf.Scene) -> None:
     """Hertz: A ~ E^(-2/3), so tau found from tau A is off by 2/3 of E's share of the pair's compliance."""
-    rows = _rows(smooth, 0.01, grid=160)  # areas are counted: 48 elements a side err by a tenth
-    found = identify(smooth, rows, 160, tolerances={"lower.material.E": 0.1})
+    rows = _rows(smooth, 0.01, (20.0, 40.0, 80.0), 96)  # areas are counted: 48 elements a side err by a tenth
+    found = identify(smooth, rows, 96, tolerances={"lower.material.E": 0.1}, design=False)
     alone = 0.1 / 1.96 * 2 / 3 * (1 / 118) / (1 / 118 + 1 / 200)
     assert found.shares["input lower.material.E"][0] / 15e6 == pytest.approx(alone, rel=0.1)
-
-
-def test_realisations_add_to_the_uncertainty(planes: rf.Scene) -> None:
-    rows = _rows(planes, 0.02, (4.0, 16.0))
-    found = identify(planes, rows, M, realisations=3, design=False)
-    assert found.shares["realisations"][0] > 0
-    with pytest.raises(InputError, match="3 to 100"):
-        identify(planes, rows, M, realisations=2)
 
 
 @pytest.mark.parametrize(
     ("friction", "law"), [(rf.Friction(beta=0.2), "Coulomb"), (rf.Friction(tau=15e6), "constant shear")]
 )
 def test_data_of_a_simpler_law_prefer_it(smooth: rf.Scene, friction: rf.Friction, law: str) -> None:
-    rows = _rows(replace(smooth, friction=friction), 0.01)
+    rows = _rows(replace(smooth, friction=friction), 0.01, (10.0, 40.0, 80.0))
     found = identify(_without_friction(smooth), rows, M, design=False)
     (name,), (value,) = zip(*found.laws[0].parameters.items(), strict=True)
     assert found.laws[0].name == law
@@ -146,38 +105,15 @@ def test_data_of_a_simpler_law_prefer_it(smooth: rf.Scene, friction: rf.Friction
         assert found.method == "profile likelihood"
 
 
-def test_data_of_a_limited_law_prefer_the_limited_law(smooth: rf.Scene) -> None:
-    """Shear stresses of 16 to 28 MPa, cut at 20 MPa: pressures hardly change by the cut."""
-    rows = []
-    for load in (2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 120.0, 160.0):
-        solution = rf.solve(replace(smooth, load=load), 96)
-        stress = np.minimum(15e6 + 0.08 * solution.pressure, 20e6)[solution.contact]
-        mu = float(stress.sum()) * solution.grid.element_area / load
-        rows.append(Row(load, mu, 0.001 * mu))
-    found = identify(_without_friction(smooth), rows, 96, design=False)
-    laws = {law.name: law for law in found.laws}
-    linear, limited = laws["tau + beta f"], laws["min(tau + beta f, r_max)"]
-    assert limited.parameters["r_max"] == pytest.approx(20e6, rel=0.05)
-    assert limited.chi_square < 0.1 * linear.chi_square
-
-
 def _yielding(smooth: rf.Scene, hardness: float) -> rf.Scene:
     return replace(
         smooth, lower=replace(smooth.lower, material=rf.Material(E=118e9, nu=0.3, hardness=hardness))
     )
 
 
-@pytest.mark.parametrize(
-    ("loads", "grid"),
-    [
-        ((5.0, 20.0, 40.0, 80.0), 32),
-        pytest.param((2.0, 5.0, 10.0, 20.0, 40.0, 80.0), 64, marks=pytest.mark.nightly),
-    ],
-)
-def test_the_hardness_is_given_back_from_a_wrong_guess(
-    smooth: rf.Scene, loads: tuple[float, ...], grid: int
-) -> None:
+def test_the_hardness_is_given_back_from_a_wrong_guess(smooth: rf.Scene) -> None:
     """p_max of the elastic contact is 0.17 GPa at 70 N: 0.1 GPa yields at the larger loads alone."""
+    loads, grid = (5.0, 20.0, 40.0, 80.0), 24
     rows = _rows(_yielding(smooth, 100e6), 0.002, loads, grid)
     found = identify(_yielding(_without_friction(smooth), 130e6), rows, grid, fit=["hardness"], design=False)
     hardness = found.values["lower.material.hardness"]
@@ -187,12 +123,6 @@ def test_the_hardness_is_given_back_from_a_wrong_guess(
     assert found.covariance.shape == (3, 3)
     assert found.degrees == len(loads) - 3
     assert all(len(part) == 3 for part in found.shares.values())
-
-
-def test_a_hardness_above_all_pressures_is_not_determined(smooth: rf.Scene) -> None:
-    scene = _yielding(smooth, 10e9)
-    with pytest.raises(ArithmeticError, match=r"mu depends on lower\.material\.hardness at no measured load"):
-        identify(scene, _rows(scene, 0.01), M, fit=["hardness"])
 
 
 def test_parameters_to_fit_are_checked(smooth: rf.Scene) -> None:
@@ -254,13 +184,6 @@ def test_criteria_of_a_law_count_its_own_and_the_further_parameters() -> None:
     assert (law.aic, law.bic) == (pytest.approx(7.0), pytest.approx(3 + 2 * math.log(6)))
 
 
-def test_few_rows_of_stated_uncertainty_do_not_favour_the_law_with_fewer_parameters() -> None:
-    """Four rows, chi-square 0.017 with tau and beta, 9.33 with beta alone: 4.0 against 11.3."""
-    both = _law("tau + beta f", {"tau": 1e7, "beta": 0.2}, 0.017, 4, 0)
-    one = _law("Coulomb", {"beta": 0.2}, 9.33, 4, 0)
-    assert (both.aic, one.aic) == (pytest.approx(4.017), pytest.approx(11.33))
-
-
 def test_a_proposed_load_is_as_uncertain_as_its_measurement_bar_and_surface() -> None:
     """hypot(0.1 * 0.3, 0.04, 0.12) = 0.13, beside a variance of 4 of tau, which is 2."""
     theta, covariance = np.array([2.0, 1.0]), np.diag([4.0, 0.25])
@@ -307,35 +230,19 @@ def test_all_rows_share_the_error_of_an_input() -> None:
     assert fitted.theta == pytest.approx([0.5, 0.7], rel=1e-8)
 
 
-@pytest.mark.parametrize(("away", "bounded"), [((1.0, 5.0), True), ((5.0, 1.0), True), ((5.0, 2.0), False)])
-def test_an_interval_that_reaches_zero_is_cut(away: tuple[float, float], bounded: bool) -> None:
-    """Optima so many standard deviations from zero; 95 % are 1.96 of them."""
-    spread = np.array([1e6, 0.01])
-    assert Profile(np.array(away) * spread, np.diag(spread**2)).is_bounded is bounded
-
-
 def test_a_wrong_row_is_named_and_dropped_and_two_wrong_rows_are_named(smooth: rf.Scene) -> None:
     """Off by 12 standard uncertainties of 1 %, before the uncertainty of the fit to four rows."""
-    grid = 2 * M
-    rows = _rows(smooth, 0.01, grid=grid)
+    rows = _rows(smooth, 0.01)
     rows[2] = replace(rows[2], mu=1.12 * rows[2].mu)
-    found = identify(_without_friction(smooth), rows, grid, design=False)
+    found = identify(_without_friction(smooth), rows, M, design=False)
     assert (found.outliers, found.fitted.dropped, found.degrees) == ((2,), 2, 2)
     assert found.values["tau"].value == pytest.approx(15e6, rel=1e-3)
     assert "row 3 (20 N) is off by +" in found.warnings[0]
     assert found.deleted[2] > 6
     rows[4] = replace(rows[4], mu=0.7 * rows[4].mu)
-    both = identify(_without_friction(smooth), rows, grid, design=False)
+    both = identify(_without_friction(smooth), rows, M, design=False)
     assert both.fitted.dropped is None
     assert {2, 4} <= set(both.outliers)
-
-
-@pytest.mark.parametrize(
-    ("factor", "said"), [(1e-3, "kN taken for N"), (1e3, "contact fills the domain or reaches")]
-)
-def test_loads_in_another_unit_do_not_belong_to_the_scene(smooth: rf.Scene, factor: float, said: str) -> None:
-    rows = [replace(row, load=factor * row.load) for row in _rows(smooth, 0.01, (20.0, 40.0, 80.0))]
-    assert said in identify(_without_friction(smooth), rows, M, design=False).warnings[0]
 
 
 def test_a_load_above_what_the_softer_body_bears_is_named_by_its_row(smooth: rf.Scene) -> None:
@@ -344,18 +251,6 @@ def test_a_load_above_what_the_softer_body_bears_is_named_by_its_row(smooth: rf.
     said = r"load of row 2 = 4000.0: expected N \(mN, kN mixed\?\), at most"
     with pytest.raises(rf.InputError, match=said):
         identify(soft, rows, M, design=False)
-
-
-def test_a_load_that_the_grid_does_not_resolve_is_named(smooth: rf.Scene) -> None:
-    """40 N given as 0.04: a contact of few elements has hardly any weight."""
-    rows = _rows(smooth, 0.01)
-    rows[3] = replace(rows[3], load=1e-3 * rows[3].load)
-    found = identify(_without_friction(smooth), rows, M, design=False)
-    assert any("exceeds half of mu in row 4 (0.04 N)" in text for text in found.warnings)
-    assert found.values["tau"].low < 15e6 < found.values["tau"].high
-
-
-SPAN = np.geomspace(1.0, 200.0, 9)  # N
 
 
 def test_the_scatter_is_the_variance_of_another_draw_about_the_mean() -> None:
@@ -371,38 +266,6 @@ def test_the_relative_scatter_that_weighs_rows_falls_with_the_root_of_the_load()
     drawn = [[_linear(2.0, (area, 0.0)) for area in (1.0, 2.0, 3.0)], [_linear(10.0, (5.0, 0.0))] * 3]
     found = working_variances(drawn, np.array([1.0, 3.0]))
     assert found == pytest.approx([2.0**2 / 6, 10.0**2 / 18])
-
-
-@pytest.mark.parametrize(
-    ("count", "correlation"), [(4, 3.0), pytest.param(8, 1.5, marks=pytest.mark.nightly)]
-)
-def test_intervals_from_few_draws_cover(count: int, correlation: float) -> None:
-    """Areas that scatter as ``P^(-0.6)``, with any correlation in ln P: 95 % cover.
-
-    300 twins: two standard deviations of their share are 2.5 %. Weights by the covariance of four draws
-    cover 80 % instead.
-    """
-    rng, theta, beta = np.random.default_rng(42), np.array([1.0, 1.0]), np.full(len(SPAN), 0.1)
-    area = 0.5 * SPAN ** (-1 / 3)
-    correlations = np.exp(-np.abs(np.subtract.outer(np.log(SPAN), np.log(SPAN))) / correlation)
-    scale = 0.3 * SPAN**-0.6 * area
-    root = np.linalg.cholesky(np.outer(scale, scale) * correlations)
-    covered = []
-    for _ in range(300):
-        areas = area + rng.standard_normal((count + 1, len(SPAN))) @ root.T
-        noise = 0.005 * (area + beta)
-        rows = [
-            Row(load, a + b + u * rng.standard_normal(), u)
-            for load, a, b, u in zip(SPAN, areas[0], beta, noise, strict=True)
-        ]
-        drawn = [[_linear(a + b, (a, b)) for a in row] for row, b in zip(areas[1:].T, beta, strict=True)]
-        means = [mean_response(row) for row in drawn]
-        fitted = linear_fit(rows, means, working_variances(drawn, SPAN), scatter(drawn), 0.0, 1)
-        profile = profile_of(fitted, shares(rows, fitted, ()))
-        assert isinstance(profile, VaryingProfile)
-        excess = [profile.excess(axis, true) for axis, true in zip(np.eye(2), theta, strict=True)]
-        covered.append(np.array(excess) <= 0)
-    assert np.min(np.mean(covered, axis=0)) > 0.925
 
 
 def _linear(mu: float, slopes: tuple[float, float]) -> Response:
@@ -422,24 +285,18 @@ def test_an_end_judged_by_its_own_scatter() -> None:
         assert profile.interval(np.array([1.0, 0.0])) == pytest.approx((low, high), rel=1e-4)
 
 
-@pytest.mark.parametrize(
-    ("loads", "realisations"),
-    [((2.0, 20.0, 60.0), 3), pytest.param((2.0, 6.0, 20.0, 60.0), 4, marks=pytest.mark.nightly)],
-)
-def test_statistics_of_a_surface_cover_a_realisation_that_no_fit_draws(
-    loads: tuple[float, ...], realisations: int
-) -> None:
+def test_statistics_of_a_surface_cover_a_realisation_that_no_fit_draws() -> None:
     """Noise of 0.1 % would miss by tens of standard uncertainties: the scatter of realisations covers it."""
     scene = read_scene("table1-rough")
     rough = scene.lower.surface
     assert isinstance(rough, rf.GaussianRoughness)
     pair = replace(scene, lower=replace(scene.lower, surface=replace(rough, seed=77)))
     rows = []
-    for load in loads:
-        mu = rf.solve(replace(pair, load=load), 64).friction_coefficient
+    for load in (2.0, 20.0, 60.0):
+        mu = rf.solve(replace(pair, load=load), 48).friction_coefficient
         rows.append(Row(load, mu, 0.001 * mu))
     blind = replace(scene, friction=rf.Friction())
-    found = identify(blind, rows, 64, loads=(2.0,), realisations=realisations, design=False)
+    found = identify(blind, rows, 48, loads=(2.0,), realisations=3, design=False)
     assert found.values["tau"].low < scene.friction.tau < found.values["tau"].high
     assert found.values["beta"].low < scene.friction.beta < found.values["beta"].high
     assert found.shares["realisations"][0] > found.shares["measurement"][0]

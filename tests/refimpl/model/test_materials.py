@@ -1,4 +1,4 @@
-"""Compliances in exact numbers, the friction law of Eqs (1), (8) and (10), and shear on two bodies."""
+"""Compliances in exact numbers, the friction law of Eqs (1) and (8), and shear on two bodies."""
 
 from __future__ import annotations
 
@@ -8,16 +8,9 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.model.elasticity import Elasticity
-from refimpl.model.friction import (
-    Friction,
-    friction_coefficient_at,
-    friction_per_area,
-    is_frictionless,
-    shear_at,
-)
+from refimpl.model.friction import Friction, is_frictionless
 from refimpl.model.materials import Material, Pair
 from verification.exact.dense_influence import DenseInfluence
 
@@ -50,25 +43,6 @@ def test_the_shear_offset_is_what_is_no_multiple_of_the_pressure() -> None:
 )
 def test_a_law_without_shear(law: Friction, expected: bool) -> None:
     assert is_frictionless(law) is expected
-
-
-def test_of_smooth_contact_mu_follows_from_the_mean_pressure() -> None:
-    """Eq. (10), ``mu = tau / f_m + beta``, and its derivative with the area, ``tau / N``."""
-    law = Friction(tau=15e6, beta=0.08)
-    assert shear_at(law, 1e8) == pytest.approx(23e6, rel=1e-15)
-    assert friction_coefficient_at(law, 1e8) == pytest.approx(0.23, rel=1e-15)
-    load, area, step = 70.0, 1e-6, 1e-9
-    slope = friction_coefficient_at(law, load / (area + step)) - friction_coefficient_at(law, load / area)
-    assert friction_per_area(law, load) == pytest.approx(slope / step, rel=1e-6)
-    assert friction_per_area(law, 0.0) == 0
-
-
-@pytest.mark.parametrize(
-    ("field", "value"), [("tau", -1.0), ("tau", np.inf), ("tau", "1"), ("beta", -0.1), ("beta", np.nan)]
-)
-def test_parameters_out_of_range_are_refused(field: str, value: float) -> None:
-    with pytest.raises(InputError, match=rf"^friction\.{field} = "):
-        Friction(**{field: value})
 
 
 SOFT, HARD = rf.Material(2e9, 0.1), rf.Material(50e9, 0.4)

@@ -1,16 +1,13 @@
-"""The spectral preconditioner, alone and continued beyond the contact: symbol, spectrum, steps saved."""
+"""The spectral preconditioner, alone and continued beyond the contact by means of blocks: steps saved."""
 
 from __future__ import annotations
-
-import math
-from collections.abc import Callable
 
 import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.bounds.energy_norm import smallest_symbol
-from refimpl.grid import Array, Grid, Mask, Window
+from refimpl.grid import Grid, Mask, Window
+from refimpl.operators.block_means import BlockMeans
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.influence import WindowInfluence, window_influence
 from refimpl.operators.kernel_tables import unit_table
@@ -61,15 +58,6 @@ def test_single_precision_on_large_windows(size: float) -> None:
     assert not np.allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
 
 
-@pytest.mark.parametrize("aspect", [0.1, 1.0, 2.5])
-@pytest.mark.parametrize("shape", [(7, 5), (1, 81), (2, 130)])
-def test_symbols_are_positive(shape: tuple[int, int], aspect: float) -> None:
-    """At least 0.7889 of the infinite lattice's least symbol, of which long windows two elements wide lack
-    most (measured for 1 to 200 elements an axis and aspects of 0.02 to 50)."""
-    symbol = on(*shape, 0.5, 0.5 * aspect).symbol / 0.5
-    assert symbol.min() >= 0.788 * smallest_symbol(aspect)
-
-
 @pytest.mark.parametrize("aspect", [1.0, 0.4])
 def test_the_symbol_is_the_periodic_sum_of_the_kernel(aspect: float) -> None:
     """Every second frequency of a padded circle: the kernel summed over the circle's images."""
@@ -113,12 +101,6 @@ def test_the_mean_has_half_of_the_longest_waves_stiffness(n: int, m: int) -> Non
     assert np.array_equal(operator.symbol, before)  # the argument stays as it is
 
 
-def test_a_single_element_that_repeats_has_no_wave_and_is_left_as_it_is() -> None:
-    assert spectral(periodic(1, 1, 0.5, 0.5), 3.0)(np.full((1, 1), 0.7)) == pytest.approx(
-        np.full((1, 1), 0.7)
-    )
-
-
 @pytest.mark.parametrize(("k", "m"), [(1, 0), (0, 2), (3, -1), (-2, 5)])
 @pytest.mark.parametrize("shape", [(12, 12), (12, 15), (9, 16)])
 def test_periodic_it_inverts_the_half_space_on_waves(k: int, m: int, shape: tuple[int, int]) -> None:
@@ -132,7 +114,6 @@ def test_periodic_it_inverts_the_half_space_on_waves(k: int, m: int, shape: tupl
 
 
 SHAPE = (18, 15)
-AMPLE = (125, 128)  # 16,000 elements of a window, from which on twenty neighbours are asked
 
 
 def patches(shape: tuple[int, int] = SHAPE, share: float = 0.3, seed: int = 4) -> Mask:
@@ -147,52 +128,6 @@ def on_window(shape: tuple[int, int] = SHAPE) -> SpectralPreconditioner:
     n, m = shape
     operator = window_influence(Grid.square(max(shape) * 1e-4, max(shape)), 0.0, Window(0, n, 0, m))
     return SpectralPreconditioner(operator, COMPLIANCE * operator.symbol)
-
-
-def continued(contact: Mask, values: Array) -> Array:
-    """Element by element: beyond the contact, neighbours' mean by 1 / distance, held back a little.
-
-    On few elements that of the twelve nearest, held back by 0.5; on many of the twenty nearest, by 0.3.
-    """
-    n, m = contact.shape
-    farthest, held = (5, 0.3) if contact.size >= 16_000 else (4, 0.5)
-    found = values.copy()
-    near = [(i, j) for i in range(-2, 3) for j in range(-2, 3) if 0 < i * i + j * j <= farthest]
-    full = math.fsum(1 / math.hypot(i, j) for i, j in near)
-    for x, y in zip(*np.nonzero(~contact & (values == 0)), strict=True):
-        asked = [
-            (1 / math.hypot(i, j), values[x + i, y + j])
-            for i, j in near
-            if 0 <= x + i < n and 0 <= y + j < m and contact[x + i, y + j]
-        ]
-        weight = math.fsum(w for w, _ in asked)
-        found[x, y] = math.fsum(w * value for w, value in asked) / ((1 - held) * weight + held * full)
-    return found
-
-
-def energy_of(values: Array, precondition: Callable[[Array], Array]) -> float:
-    return float(np.vdot(values, precondition(values)))
-
-
-@pytest.mark.parametrize(
-    ("shape", "share"),
-    [(SHAPE, 0.1), (SHAPE, 0.8), (AMPLE, 0.3), ((3, 5333), 0.3)],
-)
-def test_beyond_the_contact_stands_the_mean_of_neighbours(shape: tuple[int, int], share: float) -> None:
-    contact = patches(shape, share)
-    assert contact[:, 0].any() or contact[-1].any()  # the window's border is met
-    values = contact * np.random.default_rng(5).normal(size=shape)
-    e = continued(contact, values)
-    heard: list[Array] = []
-
-    def overheard(residual: Array) -> Array:
-        heard.append(residual.copy())
-        return on_window(shape)(residual)
-
-    found = ExtendedPreconditioner(overheard, contact)(values)
-    np.testing.assert_allclose(heard[0], e, rtol=1e-13, atol=1e-14)
-    # and back by the transpose: x.(E' W E x) is the continuation's energy
-    assert np.vdot(values, found) == pytest.approx(energy_of(e, on_window(shape)), rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -240,3 +175,24 @@ def test_means_fill_between_scattered_contact_and_keep_the_map_symmetric() -> No
     apply = ExtendedPreconditioner(spectral(on(320, 330)), contact)
     a, b = (contact * field for field in np.random.default_rng(6).standard_normal((2, 320, 330)))
     assert np.vdot(b, apply(a)) == pytest.approx(np.vdot(a, apply(b)), abs=1e-6 * np.vdot(a, apply(a)))
+
+
+@pytest.mark.parametrize("shape", [(64, 96), (70, 41)])
+def test_transposed_is_the_transpose(shape: tuple[int, int]) -> None:
+    rng = np.random.default_rng(2)
+    means = BlockMeans(rng.random(shape) < 0.1)
+    a, b = rng.standard_normal((2, *shape))
+    assert np.vdot(b, means.continued(a)) == pytest.approx(np.vdot(a, means.transposed(b)), rel=1e-12)
+
+
+def test_dense_contact_is_continued_by_its_value_and_a_lone_element_fades() -> None:
+    contact = np.zeros((128, 128), dtype=bool)
+    contact[::2, ::2] = True
+    found = BlockMeans(contact).continued(contact.astype(float))
+    assert 0.7 < found[64, 64] < 1
+    lone = np.zeros_like(contact)
+    lone[64, 64] = True
+    along = BlockMeans(lone).continued(lone.astype(float))[64, 65:]
+    assert along[0] < 0.1
+    assert np.all(np.diff(along[4:]) <= 0)
+    assert along[-1] == 0

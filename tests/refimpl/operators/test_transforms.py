@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Array
-from refimpl.operators import fft, periodic, preconditioner, symmetric, threads, transforms
+from refimpl.operators import fft, periodic, preconditioner, threads, transforms
 from refimpl.operators.transforms import Ducc, Library, SciPy
 
 RANDOM = np.random.default_rng(5)
@@ -97,7 +96,7 @@ def test_solutions_are_the_same_by_either(name: str, monkeypatch: pytest.MonkeyP
     """To rounding: measured 1e-14 of the largest pressure."""
     found = []
     for library in (SciPy(), ducc()):
-        for module in (transforms, fft, symmetric, periodic, preconditioner):
+        for module in (transforms, fft, periodic, preconditioner):
             monkeypatch.setattr(module, "fourier", library)
         found.append(rf.solve(rf.read_scene(name), 48, tolerance=1e-10))
     one, other = found
@@ -137,11 +136,13 @@ def test_of_numbers_of_threads_the_first_counts_and_one_that_is_none_for_nothing
     assert threads.allowed_threads() == 3
 
 
-@pytest.mark.parametrize(("name", "said"), [("OMP_NUM_THREADS", "2,1"), ("DUCC0_NUM_THREADS", "-1")])
-def test_no_number_of_threads_ends_in_an_assertion_of_a_library(name: str, said: str) -> None:
+def test_no_number_of_threads_ends_in_an_assertion_of_a_library() -> None:
+    said = {"OMP_NUM_THREADS": "2,1", "DUCC0_NUM_THREADS": "-1"}
     code = "from refimpl.operators.transforms import fourier; import numpy, os; "
-    code += f"assert os.environ[{name!r}] == {said!r}; fourier.plane(numpy.ones((200, 200)), (200, 200), 2)"
-    done = subprocess.run([sys.executable, "-c", code], env=os.environ | {name: said}, capture_output=True)
+    code += (
+        f"assert {said}.items() <= os.environ.items(); fourier.plane(numpy.ones((200, 200)), (200, 200), 2)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], env=os.environ | said, capture_output=True)
     assert done.returncode == 0, done.stderr.decode()
 
 
@@ -149,57 +150,3 @@ def test_small_transforms_have_one_thread(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setenv("OMP_NUM_THREADS", "3")
     assert transforms.threads(256 * 256) == 1
     assert transforms.threads(1024 * 1024) == 3
-
-
-SOLVED = """
-import sys
-if sys.argv[2] == "SciPy":
-    sys.modules["ducc0"] = None
-import refimpl as rf
-from refimpl.operators.transforms import fourier
-assert type(fourier).__name__ == sys.argv[2]
-fourier.worthwhile = 1
-sys.stdout.buffer.write(rf.solve(rf.read_scene(sys.argv[1]), 48).pressure.tobytes())
-"""
-
-
-def solved(scene: str, library: str, threads: int) -> Array:
-    """By a fresh process: ducc0 and BLAS read the number of threads when they are imported."""
-    environment = os.environ | {"OMP_NUM_THREADS": str(threads)}
-    asked = [sys.executable, "-c", SOLVED, scene, library]
-    done = subprocess.run(asked, env=environment, capture_output=True, check=True)
-    return np.frombuffer(done.stdout)
-
-
-@pytest.mark.nightly
-def test_threads_change_no_bit_of_scipy_and_the_last_ones_of_ducc0() -> None:
-    one, two = (solved("table1-rough", "SciPy", threads) for threads in (1, 2))
-    assert np.array_equal(one, two)
-    pytest.importorskip("ducc0")
-    one, two = (solved("rough-planes", "Ducc", threads) for threads in (1, 2))
-    assert np.abs(one - two).max() < 1e-12 * one.max()
-
-
-_INNER = """
-import numpy as np
-from refimpl.grid import inner
-random = np.random.default_rng(1)
-for n in (9_999, 10_000, 10_001, 200_000):
-    print(inner(*random.standard_normal((2, 1, n))).hex())
-"""
-
-
-def test_inner_products_are_the_same_on_any_number_of_threads() -> None:
-    """On either side of the length from which OpenBLAS takes more of them, where BLAS's own differ."""
-    said = [
-        subprocess.run(
-            [sys.executable, "-c", _INNER],
-            env=os.environ | {"OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": threads},
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout
-        for threads in ("1", "2")
-    ]
-    assert said[0] == said[1]
-    assert len(said[0].splitlines()) == 4

@@ -15,7 +15,7 @@ from refimpl import operating_system as module
 from refimpl.grid import Grid
 from refimpl.model.problem import Terms
 from refimpl.operating_system import free_memory
-from refimpl.planning import plan, term_effects, terms
+from refimpl.planning import plan, term_effects
 from refimpl.planning.expected_contact import expected_contact, solved_contact
 from refimpl.planning.plan import Plan, make_plan, memory_of
 from refimpl.planning.term_effects import Scales
@@ -61,7 +61,7 @@ def test_with_a_grid_alone_nothing_that_shear_does_is_small_enough() -> None:
     assert all(chosen.includes(name) for name in ("coupled", "oblique", "tilted", "active_set"))
 
 
-@pytest.mark.parametrize("accuracy", [0.3, 0.03, 0.001])
+@pytest.mark.parametrize("accuracy", [0.3, 0.001])
 def test_what_is_neglected_stays_within_its_budget(accuracy: float) -> None:
     chosen = planned(ROUGH, 256, demand=accuracy)
     assert chosen.budget == 0.5 * accuracy
@@ -146,35 +146,6 @@ def test_shear_tilts_the_common_surface_of_twins() -> None:
     assert 0 < lost <= term_effects.tilted(scales).friction * scales.mu < 3 * lost
 
 
-def test_accuracy_neglects_terms_and_says_so() -> None:
-    s = rf.solve(SMOOTH, accuracy=0.05)
-    assert s.plan.neglected
-    assert "neglected" in s.uncertainty["friction_coefficient"]
-    assert 0 < s.uncertainty["friction_coefficient"]["neglected"] <= 0.05 * s.friction_coefficient
-    full = rf.solve(
-        SMOOTH, max(s.grid.shape), tolerance=s.details.tolerance, oblique=True, coupled=True, tilted=True
-    )
-    change = abs(s.friction_coefficient - full.friction_coefficient)
-    assert change <= s.uncertainty["friction_coefficient"]["neglected"]
-    assert set(s.details.neglected) == set(s.plan.neglected)
-
-
-def test_terms_that_turn_out_to_matter_are_restored(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An estimate a thousand times too small before the solve, and right after it; then slopes as well."""
-
-    def small(scales: Scales) -> term_effects.Effect:
-        return term_effects.Effect(*(1e-3 * x for x in vars(term_effects.coupled(scales)).values()))
-
-    monkeypatch.setattr(terms, "ESTIMATES", term_effects.ESTIMATES | {"coupled": small})
-    soft = replace(
-        ROUGH, lower=rf.Body(rf.Material(2.5e9, 0.1), ROUGH.lower.surface), friction=rf.Friction(0, 0.4)
-    )
-    s = rf.solve(soft, accuracy=0.05)
-    for name in ("coupled", "oblique"):
-        assert s.plan.includes(name)
-        assert "restored" in s.plan.term(name).reason
-
-
 def test_slopes_neglected_in_a_frictionless_scene_leave_mu_open() -> None:
     """All of mu, and of Q, is theirs: it was told as 0 without a bar."""
     scene = replace(ROUGH, friction=rf.Friction())
@@ -206,33 +177,6 @@ def test_neglected_terms_are_in_the_error_bars_of_all_numbers(at_approach: bool)
         left_out = s.uncertainty[name]["neglected"]
         assert abs(getattr(s, name) - getattr(full, name)) <= left_out, name
     assert "neglected" not in s.uncertainty.get(given.pop(), {})
-
-
-def test_mu_without_friction_needs_slopes() -> None:
-    scene = replace(ROUGH, friction=rf.Friction())
-    s = rf.solve(scene, accuracy=0.1, quantity="friction_coefficient")
-    assert s.converged
-    assert s.plan.includes("oblique")
-    assert sum(s.uncertainty["friction_coefficient"].values()) <= 0.1 * abs(s.friction_coefficient)
-
-
-def test_the_slope_correction_moves_mu_on_a_flat_body_without_friction() -> None:
-    """What acts along the facets of a rough ball works too, so that <t> need not be the flat body's."""
-    ball = rf.Sphere(0.14) + rf.GaussianRoughness(0.5e-6, 104e-6, seed=2)
-    scene = replace(FRICTIONLESS, upper=rf.Body(STEEL, ball))
-    printed, corrected = (rf.solve(scene, 64, slope_correction=on) for on in (False, True))
-    change = abs(corrected.friction_coefficient - printed.friction_coefficient)
-    estimate = corrected.plan.term("slope_correction").effect
-    assert 1e-7 < change <= estimate.bare < 1e-3
-    smooth = planned(FRICTIONLESS, 64)
-    assert smooth.term("slope_correction").effect.bare == 0.0
-
-
-def test_a_mu_that_is_exactly_zero_needs_no_finer_grid() -> None:
-    s = rf.solve(rf.read_scene("hertz"), accuracy=0.01, quantity="friction_coefficient")
-    assert s.converged
-    assert max(s.grid.shape) == 64
-    assert s.friction_coefficient == 0.0
 
 
 GB = 2**30
@@ -282,20 +226,3 @@ def test_limits_of_the_process(which: str, left: int, system: Path, monkeypatch:
     )
     monkeypatch.setattr(psutil, "Process", lambda: process)
     assert free_memory() == left
-
-
-@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
-def test_slopes_across_the_edge_of_a_flat_top_are_not_negligible(share: float) -> None:
-    """At a wall the common surface falls to the middle of the gap, whichever body is softer.
-
-    A frictionless square punch: without slope terms p_max is off by more than a fifth, the approach by 1 %.
-    """
-    x = np.abs((np.arange(64) + 0.5) / 64 - 0.5)
-    top = np.where(np.maximum(x[:, None], x) < 0.25, 0.0, -1e-5)
-    soft, stiff = (rf.Material(E=modulus, nu=0.3) for modulus in (1e11, 1e11 * share / (1 - share)))
-    punch, plane = rf.Body(stiff, rf.ArraySurface(top)), rf.Body(soft, rf.Flat())
-    scene = rf.Scene(upper=plane, lower=punch, friction=rf.Friction(), load=50.0, side=5e-4)
-    flat, planned = rf.solve(scene, 64, oblique=False), rf.solve(scene, 64)
-    assert planned.plan.includes("oblique")
-    assert flat.max_pressure > 1.2 * planned.max_pressure
-    assert abs(flat.approach - planned.approach) > 0.01 * planned.approach

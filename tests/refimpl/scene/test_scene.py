@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import json
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import pytest
 
 import refimpl as rf
 from refimpl.driver.options import Options
-from refimpl.grid import Array, Grid
+from refimpl.grid import Grid
 from refimpl.model.problem import Terms
 from refimpl.scene.discretise import discretise
 from refimpl.scene.resolution import resolution
@@ -29,12 +27,6 @@ SCENE = rf.Scene(
     side=1e-3,
 )
 GRID = rf.Grid.square(SCENE.side, 16)
-
-
-def test_heights_are_about_their_mid_height() -> None:
-    for z in SCENE.heights(GRID):
-        assert z.shape == (16, 16)
-        assert abs(z.min() + z.max()) <= 1e-15 * np.ptp(z)
 
 
 def test_x_is_the_first_axis() -> None:
@@ -80,26 +72,6 @@ def test_parameters_are_stored_as_doubles(width: Any) -> None:
     assert numbers == (2.0, 0.0, 3.0, 5.0, 1.0, 1.0, 70.0, 1.0, 1.0, 0.0)
 
 
-def test_single_precision_in_is_double_precision_throughout() -> None:
-    side, load = np.float32(ROUGH_BALL.side), np.float32(ROUGH_BALL.load)
-    single = rf.solve(replace(ROUGH_BALL, side=side, load=load), np.int64(24), tolerance=np.float64(1e-8))
-    double = rf.solve(replace(ROUGH_BALL, side=float(side), load=float(load)), 24)
-    assert single.converged
-    assert np.array_equal(single.pressure, double.pressure)
-    assert type(single.friction_coefficient) is type(single.contact_area) is float
-
-
-def test_the_written_forms_take_them() -> None:
-    scene = replace(ROUGH_BALL, load=np.int64(70), friction=rf.Friction(np.float32(15e6), np.float32(0.5)))
-    assert "load = 70.0" in rf.scene_to_toml(scene)
-    json.dumps(rf.solve(scene, np.int64(8), approach=np.float32(1e-6)).summary())
-
-
-def measured(path: Path, shape: tuple[int, int]) -> rf.Body:
-    np.save(path, np.random.default_rng(1).normal(size=shape))
-    return rf.Body(STEEL, rf.MeasuredSurface(path, unit="um", pixel_size=1e-5))
-
-
 def test_the_roughness_that_is_resolved_worst_counts() -> None:
     """Elements per length over those required: not the fewest elements."""
     gaussian = rf.GaussianRoughness(1e-6, 6e-5, seed=1)
@@ -124,13 +96,6 @@ def test_the_roughness_that_is_resolved_worst_counts() -> None:
     assert of(gaussian, waves) == of(waves, gaussian) == worst
 
 
-@pytest.mark.parametrize("given", [{}, {"side": 1e-4}, {"size": (1.5e-4, 1e-4)}], ids=str)
-def test_a_size_that_nobody_gave_is_noted(given: dict[str, Any], tmp_path: Path) -> None:
-    body = measured(tmp_path / "a.npy", (30, 20))
-    scene = rf.Scene(rf.Body(STEEL, rf.Flat()), body, rf.Friction(), 1.0, **given)
-    assert any("no size given" in line for line in scene.notes(scene.grid(8))) == (not given)
-
-
 def test_balls_go_on_beyond_a_free_domain_alone() -> None:
     ball, bowl = rf.Body(STEEL, rf.Sphere(0.1)), rf.Body(STEEL, rf.Sphere(0.1))
     flat = rf.Body(STEEL, rf.Flat())
@@ -144,41 +109,6 @@ FLAT = Terms(coupled=False, oblique=False, tilted=False)
 ROUGH_FLAT = replace(SMOOTH, lower=rf.Body(SMOOTH.lower.material, rf.GaussianRoughness(1e-6, 4e-4, seed=2)))
 PLANES = rf.read_scene("rough-planes")
 RECTANGLE = Grid((12, 20), (1.2e-3, 2.5e-3))
-
-
-@dataclass(frozen=True)
-class Counted(rf.Sphere):
-    """A ball that counts how often it is sampled, and warns each time."""
-
-    radius: float = 0.14
-    sampled: list[int] = field(default_factory=list)
-    kind: ClassVar[str] = "counted"
-
-    def heights_on(self, grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> Array:
-        self.sampled.append(grid.shape[0])
-        return super().heights_on(grid, offset)
-
-    def notes(self, grid: Grid) -> tuple[str, ...]:
-        return ("counted by hand",)
-
-
-def counted() -> tuple[rf.Scene, list[int]]:
-    ball = Counted()
-    return replace(SMOOTH, upper=rf.Body(SMOOTH.upper.material, ball)), ball.sampled
-
-
-def test_a_solve_on_a_grid_samples_once_and_says_once_what_surfaces_note() -> None:
-    scene, sampled = counted()
-    found = rf.solve(scene, grid=32)
-    assert sampled == [32]
-    assert [str(line) for line in found.warnings].count("counted by hand") == 1
-
-
-def test_a_refinement_samples_each_grid_once_and_the_one_that_decides() -> None:
-    scene, sampled = counted()
-    rf.solve(scene, accuracy=0.03)
-    assert sampled[0] == 256
-    assert len(set(sampled)) == len(sampled)
 
 
 def test_heights_of_a_scene_are_its_own() -> None:

@@ -22,10 +22,7 @@ from refimpl.model.problem import Problem, Terms
 from refimpl.scene.discretise import discretise
 from refimpl.sensitivities import half_space
 from refimpl.sensitivities.half_space import HalfSpaceError, advice, half_space_error
-from refimpl.sensitivities.surface_verdict import (
-    pressed_on_a_flat,
-    surface_verdict,
-)
+from refimpl.sensitivities.surface_verdict import pressed_on_a_flat, surface_verdict
 
 SIZE, ELEMENTS = (3e-3, 2e-3), (9, 6)
 # compliances 0.91 / 3 and 1 / 45: 91 to 20/3

@@ -17,7 +17,7 @@ import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.solution import display
-from refimpl.solution.arrays import as_dataset, attributes_of, fields_of
+from refimpl.solution.arrays import as_dataset, attributes_of
 from refimpl.solution.patches import patches_of
 from tests.changed import changed
 
@@ -67,29 +67,6 @@ def test_a_patch_across_a_period_has_its_centre_at_the_border() -> None:
     assert patch.elements == 2
     assert min(patch.x, 8 - patch.x) == pytest.approx(0, abs=1e-12)
     assert patch.y == pytest.approx(4.5)
-
-
-@pytest.mark.parametrize(
-    ("periodic", "labels"), [(False, [[1, 0, 2], [0, 0, 2]]), (True, [[1, 0, 1], [0, 0, 1]])]
-)
-def test_every_field_is_the_solutions_of_that_name(periodic: bool, labels: list[list[int]]) -> None:
-    """No two of them are equal here; patches are labels of the contact, across a period as well."""
-    grid = rf.Grid((2, 3), (1e-3, 2e-3), periodic=periodic)
-    contact = np.array([[True, False, True], [False, False, True]])
-    slopes, details = SimpleNamespace(), SimpleNamespace()
-    made: Any = SimpleNamespace(grid=grid, contact=contact, slopes=slopes, details=details)
-    holders = {"theta_x": slopes, "theta_y": slopes, "plastic": details, "excluded": details}
-    names = {
-        "pressure": "Pa", "traction": "Pa", "gap": "m", "surface_lower": "m", "surface_upper": "m",
-        "theta_x": "rad", "theta_y": "rad", "plastic_indentation": "m", "plastic": "1", "excluded": "1",
-    }  # fmt: skip
-    for k, name in enumerate(names):
-        setattr(holders.get(name, made), name, np.full(grid.shape, float(k)))
-    made.surfaces = made.surface_lower, made.surface_upper
-    found = fields_of(made)
-    assert found.pop("patch").values.tolist() == labels
-    assert {name: field.unit for name, field in found.items()} == names
-    assert [float(field.values[0, 0]) for field in found.values()] == list(range(10))
 
 
 def test_a_dataset_has_coordinates_units_and_numbers(oblong: rf.Solution) -> None:
@@ -158,20 +135,3 @@ def test_a_file_has_settings_units_and_the_errors_that_there_are(oblong: rf.Solu
     expected = ["fft", 1, 1e-8, own.certificate.largest, 0.3, "x\ny", "1.2"]
     assert [found[name] for name in names] == expected
     assert [found[f"{name}_unit"] for name in SHOWN] == [row[2] for row in SHOWN.values()]
-
-
-def test_the_summary_of_an_oblong_solution(oblong: rf.Solution) -> None:
-    s, found, touching = oblong, oblong.summary(), np.count_nonzero(oblong.pressure)
-    assert found["contact_area_share"] == s.contact_area_share == pytest.approx(touching / 24)
-    assert s.error("contact_area_share") == pytest.approx(s.error("contact_area") / 4.8e-6)
-    assert found["mean_gap"] == pytest.approx(s.gap.sum() / 24)
-    assert found["mean_pressure"] == pytest.approx(s.pressure.sum() / touching)
-    assert found["cost"]["applications"] == s.cost.applications
-    assert found["cost"]["iterations"] == s.cost.iterations
-    shown = display.line(s), display.table(s), display.html(s)
-    assert (repr(s), str(s), s._repr_html_()) == shown
-    rows = [(term.label, term.included, term.reason) for term in s.plan.terms]
-    assert [(row["term"], row["included"], row["reason"]) for row in found["plan"]] == rows
-    assert [w for w in s.warnings if "unlimited" in w] == [
-        "the lower body has no hardness: taken as unlimited"
-    ]

@@ -1,4 +1,4 @@
-"""First-order recession of undeformed surfaces: closed forms, symmetry, and what must not matter."""
+"""First-order recession of undeformed surfaces: closed forms, symmetry, and the warnings that rest on it."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import pytest
 import refimpl as rf
 from refimpl.grid import Array, Grid
 from refimpl.half_space.boundary_perturbation import Contact, gap_changes
+from refimpl.half_space.model_form import steepness
 from refimpl.model.materials import Material, Pair
 from refimpl.model.slopes import Slopes
 from refimpl.sensitivities.half_space import half_space_error
@@ -49,23 +50,6 @@ def test_a_wave_pressed_flat_recedes_as_bettis_theorem_wants() -> None:
     expected = C * (a * p1 / 2 + a * cos * p0) - half_plane * C * (p0 * p1 * cos + p1**2 / 2 * twice)
     assert lower == pytest.approx(np.repeat(expected[:, None], 4, axis=1), rel=1e-12)
     assert not upper.any()
-
-
-def test_both_bodies_see_the_same_by_mirror_symmetry() -> None:
-    x = WAVE.x
-    height, pressure = (np.repeat(z[:, None], 4, axis=1) for z in (np.cos(6.3 * x), 1e6 * (1 + x)))
-    below = contact(WAVE, height, pressure, 0.2 * pressure)
-    above = Contact(
-        grid=WAVE,
-        pair=Pair(RIGID, Material(E, NU)),
-        heights=(WAVE.zeros, -height),
-        displacements=(WAVE.zeros, height),
-        pressure=pressure,
-        traction=-0.2 * pressure,  # on the lower body; the upper one feels the opposite
-        slopes=below.slopes,
-        direction=0.0,
-    )
-    assert gap_changes(above)[1] == pytest.approx(gap_changes(below)[0], rel=1e-12)
 
 
 def wave_scene(slope_deg: float, M: int = 96) -> rf.Scene:
@@ -128,3 +112,28 @@ def test_a_quarter_turn_of_everything_turns_the_recession(facets_solved: bool) -
 
     once = at(0, 0.4)
     assert at(1, 0.4 + math.pi / 2) == pytest.approx(np.rot90(once), rel=1e-9, abs=1e-12 * abs(once).max())
+
+
+SHARP = rf.Body(rf.Material(E=210e9, nu=0.3), rf.Sphere(4e-3))
+
+
+def warned(rms: float) -> tuple[rf.Solution, list[float]]:
+    """A ball on a rough soft body, and the numbers of its half-space warnings."""
+    rough = rf.GaussianRoughness(rms=rms, correlation_length=40e-6, seed=3)
+    soft = rf.Body(rf.Material(E=3e9, nu=0.1), rough)
+    scene = rf.Scene(SHARP, soft, friction=rf.Friction(tau=1e6, beta=0.1), load=0.3, side=1e-3)
+    solution = rf.solve(scene, 160)
+    found = [text.number for text in solution.warnings if text.limit == "half-space"]
+    return solution, [number for number in found if number is not None]
+
+
+def test_steep_surfaces_are_warned_of_with_the_number_of_the_whole_grid() -> None:
+    solution, (number,) = warned(8e-6)
+    details = solution.details
+    whole = details.model_form.normal_force + 0.25 * steepness(details.problem, solution.contact)
+    assert number > 0.05
+    assert number == pytest.approx(whole, rel=0.05)
+
+
+def test_gentle_surfaces_are_not() -> None:
+    assert warned(0.2e-6)[1] == []

@@ -17,7 +17,6 @@ from refimpl.scene.discretise import discretise
 from refimpl.solution.data_error import data_error, finest_by_data
 from refimpl.solution.domain_error import unseen_parts
 from refimpl.surfaces import Surface
-from tests import plate
 
 LENGTHS = (4e-3, 2e-3)
 
@@ -77,24 +76,6 @@ def test_a_balls_slope_is_no_roughness_beside_the_data() -> None:
     assert data_error(waves(rf.Sphere(0.2), MEASURED), Grid((8, 4), LENGTHS, True)) == pytest.approx(
         0.01957, abs=6e-6
     )
-
-
-def test_the_part_covers_maps_of_a_known_surface_and_tells_band_limited_ones() -> None:
-    """Self-affine to the pitch the data leave an error of mu, of waves above eight points a tenth of that."""
-    shares, errors = {}, {}
-    for points in (1, 8):
-        plate_ = plate.worn(seed=5, short_cut=points * plate.PITCH)
-        array = plate.sampled(plate_, plate.CLEAN, (96, 96))
-        known, mapped = (
-            rf.solve(plate.scene(surface, 0.5, (96, 96)), 288) for surface in (plate_, rf.ArraySurface(array))
-        )
-        mu = known.friction_coefficient_corrected
-        errors[points] = abs(mapped.friction_coefficient_corrected - mu) / mu
-        parts = mapped.uncertainty["friction_coefficient_corrected"]
-        shares[points] = parts["data"] / mu
-        assert abs(mapped.friction_coefficient_corrected - mu) < sum(parts.values())
-    assert errors[1] < shares[1] < 20 * errors[1]
-    assert shares[8] < shares[1] / 10
 
 
 GRID = Grid((8, 4), LENGTHS, False)

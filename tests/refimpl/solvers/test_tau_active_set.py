@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import refimpl as rf
@@ -236,7 +236,7 @@ def test_three_solves_in_a_row_that_stagnate_end_the_loop(stagnated: tuple[str, 
     assert followed(solver).solves == solves
 
 
-@settings(max_examples=200)
+@settings(max_examples=60)
 @given(st.integers(2, 6).flatmap(lambda n: st.tuples(st.just(n), st.randoms(use_true_random=False))))
 def test_any_map_from_sets_to_contacts_ends_in_a_set_within_its_contact(drawn: tuple[int, object]) -> None:
     """Without a cycle, after as many solves as there are elements, and three more, at most."""
@@ -263,51 +263,8 @@ def test_taus_states_are_the_same_on_any_window(oblique: bool) -> None:
     assert result.certificate.satisfies(1e-8)
 
 
-def random_scene(seed: int) -> rf.Scene:
-    """A ball on a flat, rough or smooth, of any materials, tau and beta."""
-    draw = np.random.default_rng(seed)
-    rough = rf.GaussianRoughness(rms=10 ** draw.uniform(-7.5, -6.2), correlation_length=2e-4, seed=seed)
-    materials = [rf.Material(E=10 ** draw.uniform(9, 12), nu=draw.uniform(0, 0.45)) for _ in range(2)]
-    return rf.Scene(
-        upper=rf.Body(materials[0], rf.Sphere(radius=10 ** draw.uniform(-2, -0.7))),
-        lower=rf.Body(materials[1], rough if draw.random() < 0.6 else rf.Flat()),
-        friction=rf.Friction(tau=float(draw.choice([1e5, 1e6, 1e7])), beta=float(draw.choice([0, 0.1, 0.4]))),
-        load=10 ** draw.uniform(-1, 1.5),
-        side=1.6e-3,
-    )
-
-
-@settings(max_examples=15, deadline=None)
-@given(seed=st.integers(0, 10**6), start=st.integers(0, 10**6), oblique=st.booleans())
-def test_the_active_set_does_not_depend_on_the_start(seed: int, start: int, oblique: bool) -> None:
-    """From pressures drawn at random, on any elements, as from a Winkler foundation's."""
-    problem = problem_of(random_scene(seed), 32, oblique=oblique)
-    draw = np.random.default_rng(start)
-    drawn = draw.random((32, 32)) * (draw.random((32, 32)) < draw.uniform(0.02, 1))
-    results = [level_solver(problem, pressure=p).result(1e-9) for p in (None, drawn)]
-    assume(all(r.status in (rf.Status.CONVERGED, rf.Status.CYCLED) for r in results))
-    one, other = results
-    assert np.array_equal(one.excluded, other.excluded)
-    assert np.array_equal(one.traction > 0, other.traction > 0)
-    assert np.abs(one.pressure - other.pressure).max() <= 1e-5 * one.pressure.max()
-
-
-def test_grid_accuracy_and_start_agree() -> None:
-    scene = replace(random_scene(3), friction=rf.Friction(tau=1e7, beta=0.1))
-    by_accuracy = rf.solve(scene, accuracy=0.05)
-    by_grid = rf.solve(scene, by_accuracy.grid.shape[0])
-    nearby = rf.solve(replace(scene, load=1.01 * scene.load), by_grid.grid.shape[0])
-    restarted = rf.solve(scene, by_grid.grid.shape[0], start=nearby)
-    for other in (by_accuracy, restarted):
-        assert np.array_equal(other.traction > 0, by_grid.traction > 0)
-        assert np.array_equal(other.details.excluded, by_grid.details.excluded)
-
-
-@pytest.mark.parametrize("scene", [FAINT, random_scene(3), random_scene(5)])
-def test_solves_that_end_early_do_not_change_the_sequence(
-    scene: rf.Scene, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    problem = problem_of(scene, 64)
+def test_solves_that_end_early_do_not_change_the_sequence(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = problem_of(FAINT, 64)
     quick = level_solver(problem)
     short = quick.result(1e-8)
     monkeypatch.setattr(ProjectedCG, "undecided", lambda cg, stiffness, among: cg.free.size)
@@ -331,13 +288,6 @@ def test_a_few_undecided_elements_do_not_hold_up_a_fine_smooth_contact() -> None
     assert np.count_nonzero(coupled.details.excluded) == 2
 
 
-def test_a_scene_whose_edge_moves_far_ends_after_few_solves() -> None:
-    """Many elements alternate, each at its own pace: sets that followed the contact took 1776 steps."""
-    found = rf.solve(study.random_scene(2047).scene, 256)
-    assert found.status in (rf.Status.CYCLED, rf.Status.CONVERGED)
-    assert sum(found.cost.iterations.values()) < 200
-
-
 def test_the_error_bar_of_the_active_set_holds_all_of_tau_on_excluded_elements() -> None:
     scene = study.random_scene(2071).scene
     found = rf.solve(scene, 128)
@@ -351,7 +301,7 @@ def test_the_error_bar_of_the_active_set_holds_all_of_tau_on_excluded_elements()
 @pytest.mark.parametrize("method", ["fft", "dense"])
 def test_tau_of_several_times_the_pressure_is_given_up(method: Literal["fft", "dense"]) -> None:
     """Most of the contact would lose it. The returned state has converged, but violates the law."""
-    found = rf.solve(replace(FAINT, friction=rf.Friction(tau=2e7, beta=0.5)), 40, method=method)
+    found = rf.solve(replace(FAINT, friction=rf.Friction(tau=2e7, beta=0.5)), 24, method=method)
     assert found.status is rf.Status.ITERATION_LIMIT
     assert found.certificate.satisfies(1e-8)
     violations = found.certificate.law_violations * found.grid.element_area
@@ -365,7 +315,7 @@ def test_a_tau_in_the_wrong_unit_ends_the_dense_method_within_its_steps(
     """Slopes and contact follow each other for ever; the status says so, and the reason names tau."""
     steps, solve_parts = [], plain.Model.solve_parts
     monkeypatch.setattr(plain.Model, "solve_parts", lambda *given: (steps.append(1), solve_parts(*given)))
-    found = rf.solve(replace(FAINT, friction=rf.Friction(tau=150e9, beta=0.08)), 4, method="dense")
+    found = rf.solve(replace(FAINT, friction=rf.Friction(tau=150e9, beta=0.08)), 8, method="dense")
     assert found.status is rf.Status.ITERATION_LIMIT
-    assert len(steps) <= 150 + 50000 // 16
+    assert len(steps) <= 150 + 50000 // 64
     assert any(str(warning).startswith("tau, 1.5e+11 Pa, is") for warning in found.warnings)

@@ -30,7 +30,7 @@ XML = """<?xml version="1.0" encoding="UTF-8"?>
 
 def write_x3p(path: Path, z: np.ndarray, dx: object = DX, dy: object = DY, data: bytes | None = None) -> Path:
     """An X3P file as ISO 25178-72 has it: x runs fastest."""
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
         archive.writestr("main.xml", XML.format(dx=dx, dy=dy, nx=z.shape[0], ny=z.shape[1]))
         archive.writestr("bindata/data.bin", z.T.astype("<f8").tobytes() if data is None else data)
     return path

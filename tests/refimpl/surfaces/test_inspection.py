@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import scipy
 
 import refimpl as rf
 from refimpl.measured.areal_parameters import (
@@ -66,7 +65,7 @@ def test_a_sine() -> None:
 def test_a_sphere_cap(tmp_path: Path) -> None:
     """On a square of side s a paraboloid of radius R has Sq^2 = s^4 / (360 R^2), Sz = s^2 / (4 R),
     Sdq^2 = s^2 / (6 R^2); the sphere is one up to (s / R)^2."""
-    n, edge, radius = 200, 1e-6, 1e-2
+    n, edge, radius = 120, 1e-6, 1e-2
     x = (np.arange(n) - (n - 1) / 2) * edge
     np.save(tmp_path / "cap.npy", np.sqrt(radius**2 - x[:, None] ** 2 - x[None, :] ** 2))
     keys = {"unit": "m", "pixel_size": edge}
@@ -80,7 +79,7 @@ def test_a_sphere_cap(tmp_path: Path) -> None:
     assert sphere.parameters["Sq"] < 1e-6 * found["Sq"]
 
 
-# --- SurfaceTopography ---
+# --- another program ---
 
 
 @pytest.mark.parametrize(
@@ -114,17 +113,6 @@ def test_parameters_agree_with_surfalize(
 # --- missing points, lay, what a map does not tell ---
 
 
-@pytest.mark.parametrize("lay", [0.0, 0.5, 2.9])
-def test_a_lay_is_found(tmp_path: Path, lay: float) -> None:
-    np.save(tmp_path / "a.npy", gaussian(WITH_LAY | {"lay": lay, "lx": 50e-6, "ly": 10e-6}, 1))
-    found = rf.inspect_surface(tmp_path / "a.npy", unit="m", pixel_size=PIXEL).parameters
-    away = (math.radians(found["lay_deg"]) - lay + math.pi / 2) % math.pi - math.pi / 2
-    assert abs(away) < 0.12
-    assert found["Str"] == pytest.approx(0.2, abs=0.06)
-    across = math.radians(found["Std"] - 90.0)
-    assert abs((across - lay + math.pi / 2) % math.pi - math.pi / 2) < 0.12
-
-
 def test_curves_are_numbers_with_their_normalisation(tmp_path: Path) -> None:
     """The sum of C over the lattice of q is (2 pi)^2 Sq^2 per cell, but for the window: 8 draws to 10 %."""
     cell = 1.0 / (math.prod(SHAPE) * math.prod(PIXEL))  # d^2q / (2 pi)^2
@@ -148,18 +136,16 @@ def test_curves_are_numbers_with_their_normalisation(tmp_path: Path) -> None:
     assert developed_area(plane, (1.0, 1.0)) == pytest.approx(math.sqrt(1.13) - 1, rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("hurst", "roll_off", "short_cut"), [(0.3, 512, 2), (0.5, 64, 2), (0.8, 32, 2), (0.8, 128, 8)]
-)
+@pytest.mark.parametrize(("hurst", "roll_off", "short_cut"), [(0.3, 256, 2), (0.8, 64, 8)])
 def test_the_hurst_exponent_is_within_its_deviation(
     tmp_path: Path, hurst: float, roll_off: float, short_cut: float
 ) -> None:
     """Of four draws each at least three are within two deviations, whatever roll-off and finest wave."""
-    cuts = {"roll_off": roll_off * 1e-6, "long_cut": 512e-6, "short_cut": short_cut * 1e-6}
+    cuts = {"roll_off": roll_off * 1e-6, "long_cut": 256e-6, "short_cut": short_cut * 1e-6}
     values = {"hurst": hurst, "rms": 1e-6, **cuts}
     within = 0
     for seed in range(4):
-        drawn = _drawn((512, 512), (1e-6, 1e-6), _self_affine_psd(values), 1e-6, np.random.default_rng(seed))
+        drawn = _drawn((256, 256), (1e-6, 1e-6), _self_affine_psd(values), 1e-6, np.random.default_rng(seed))
         np.save(tmp_path / "a.npy", drawn)
         found = rf.inspect_surface(tmp_path / "a.npy", unit="m", pixel_size=1e-6)
         assert found.deviations["hurst"] < 0.1
@@ -167,7 +153,7 @@ def test_the_hurst_exponent_is_within_its_deviation(
     assert within >= 3
 
 
-@pytest.mark.parametrize("degrees", [0, 30, 90, 135])
+@pytest.mark.parametrize("degrees", [0, 135])
 def test_a_lay_of_grooves_and_of_the_transposed_map(tmp_path: Path, degrees: int) -> None:
     """Their autocorrelation does not fall along them; those of the transposed map lie at 90 deg less."""
     turn, rng = math.radians(degrees), np.random.default_rng(5)
@@ -183,18 +169,7 @@ def test_a_lay_of_grooves_and_of_the_transposed_map(tmp_path: Path, degrees: int
     assert math.isnan(isotropic.parameters["lay_deg"])
 
 
-def test_holes_are_filled_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Once for all rows and notes; `fill_error` fills others."""
-    z = np.random.default_rng(2).normal(size=(60, 50))
-    z[5:7, 9] = z[40, 30] = np.nan
-    np.save(tmp_path / "a.npy", z)
-    solved, solve = [], scipy.sparse.linalg.spsolve
-    monkeypatch.setattr(scipy.sparse.linalg, "spsolve", lambda *a: solved.append(1) or solve(*a))
-    rf.inspect_surface(tmp_path / "a.npy", unit="um", pixel_size=1e-6).document()
-    assert len(solved) == 2
-
-
-@pytest.mark.parametrize("holes", ["none", "few", "scattered", "one"])
+@pytest.mark.parametrize("holes", ["scattered", "one"])
 def test_a_slope_of_the_spectrum_that_holes_decide_is_no_number(tmp_path: Path, holes: str) -> None:
     """A slope that is stated is within three deviations of that of the map without holes."""
     z, rng = gaussian(seed=6), np.random.default_rng(6)
@@ -202,9 +177,8 @@ def test_a_slope_of_the_spectrum_that_holes_decide_is_no_number(tmp_path: Path, 
     whole = rf.inspect_surface(tmp_path / "a.npy", unit="m", pixel_size=PIXEL)
     if holes == "scattered":
         z[rng.random(z.shape) < 0.01] = np.nan
-    elif holes != "none":
-        side = 40 if holes == "one" else 1
-        z[100 : 100 + side, 90 : 90 + side] = np.nan
+    else:
+        z[100:140, 90:130] = np.nan
     np.save(tmp_path / "a.npy", z)
     found = rf.inspect_surface(tmp_path / "a.npy", unit="m", pixel_size=PIXEL)
     if holes != "one":
@@ -268,25 +242,6 @@ def test_a_gaussian_surface_comes_back_within_its_deviations(values: dict[str, f
         assert abs(fit.values[name] - value) < 4 * fit.deviations[name], name
         assert fit.deviations[name] < 0.15 * value
     assert ("lay" in fit.values) == ("lay" in values)
-
-
-def test_a_self_affine_surface_comes_back_within_its_deviations() -> None:
-    z = _drawn(SHAPE, PIXEL, _self_affine_psd(FRACTAL), 1e-6, np.random.default_rng(8))
-    fit = fit_roughness(z, PIXEL, "self-affine")
-    for name in ("hurst", "rms", "roll_off"):
-        assert abs(fit.values[name] - FRACTAL[name]) < 4 * fit.deviations[name], name
-        assert fit.deviations[name] < 0.25 * FRACTAL[name]
-    assert fit.values["short_cut"] == pytest.approx(FRACTAL["short_cut"], rel=0.2)
-    assert set(fit.deviations) == {"hurst", "rms", "roll_off"}  # the cuts are set
-
-
-@pytest.mark.nightly
-def test_stated_deviations_are_the_scatter() -> None:
-    fits = [fit_roughness(gaussian(seed=k), PIXEL, "gaussian", 8) for k in range(6)]
-    for name in ("rms", "lx"):
-        scatter = np.std([fit.values[name] for fit in fits], ddof=1)
-        stated = np.mean([fit.deviations[name] for fit in fits])
-        assert 0.5 < stated / scatter < 2.0  # 94 % of the ratios of six draws (chi-square, 5 freedoms)
 
 
 def test_fits_of_a_lay_and_of_self_affine_maps_are_surfaces_too() -> None:

@@ -14,9 +14,8 @@ from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.measured import MeasuredSurface
 from refimpl.measured.detrending import DEGREES, fit
-from refimpl.measured.inspection import inspect_surface
 from refimpl.measured.missing_points import MAX_ELIMINATED, fill
-from refimpl.measured.readers import Overrides, read
+from refimpl.measured.readers import read
 from refimpl.measured.spectrum import Spectrum
 from refimpl.surfaces import SurfaceWarning
 from tests.refimpl.surfaces.measured import (
@@ -86,13 +85,6 @@ def test_windows_that_a_map_cannot_fill_are_refused(
         quietly(write_npy(tmp_path / "a.npy", ROUGH), grid, offset)
 
 
-def test_pixels_of_any_ratio_make_one_window_and_of_absurd_size_none(tmp_path: Path) -> None:
-    np.save(tmp_path / "a.npy", np.arange(60.0).reshape(10, 6) ** 2)
-    assert inspect_surface(tmp_path / "a.npy", unit="um", pixel_size=(1e-6, 1e12)).z.shape == (10, 6)
-    with pytest.raises(InputError, match=r"pixel of a\.sur = 1e\+31: expected a positive length in m"):
-        Overrides().resolve("a.sur", "um", (1e31, 1e-6))
-
-
 def test_finer_than_measured_warns(tmp_path: Path) -> None:
     surface = write_npy(tmp_path / "a.npy", ROUGH)
     with pytest.warns(SurfaceWarning, match="finer than the measured pixel"):
@@ -105,30 +97,6 @@ def test_finer_than_measured_warns(tmp_path: Path) -> None:
 
 
 # --- gaps ---
-
-
-def holed(z: np.ndarray) -> np.ndarray:
-    holes = z.copy()
-    holes[20:24, 20:25] = np.nan
-    holes[35, 30] = holes[3, 3] = np.nan
-    return holes
-
-
-def test_filled_heights_obey_the_maximum_principle() -> None:
-    z = RNG.normal(size=(30, 20))
-    gaps = RNG.random(z.shape) < 0.3
-    z[gaps] = np.nan
-    filled = fill(z, (1.0, 3.0))
-    np.testing.assert_array_equal(filled[~gaps], z[~gaps])
-    assert np.nanmin(z) <= filled.min()
-    assert filled.max() <= np.nanmax(z)
-    laplace = np.zeros(z.shape)
-    for axis, weight in ((0, 1.0), (1, 1.0 / 9.0)):
-        difference = np.diff(filled, axis=axis) * weight
-        edge = [(0, 0), (0, 0)]
-        edge[axis] = (1, 1)
-        laplace += np.diff(np.pad(difference, edge), axis=axis)  # no flow across the border
-    np.testing.assert_allclose(laplace[gaps], 0.0, atol=1e-13)
 
 
 @pytest.mark.parametrize(
@@ -218,15 +186,6 @@ def test_infinite_entries_of_a_file_are_missing(tmp_path: Path, suffix: str) -> 
     assert np.isnan(found.heights).sum() == 3
     kept = np.isfinite(z)
     assert np.allclose(found.heights[kept], z[kept] * 1e-6, rtol=1e-12, atol=0)
-
-
-def test_entries_that_a_line_lacks_at_its_end_are_missing(tmp_path: Path) -> None:
-    path = tmp_path / "map.txt"
-    path.write_text("1.5\t2.5\t3.5\t4.5\n5.5\t6.5\t7.5\n8.5\t9.5\t1.5\t2.5\n3.5\t4.5\t5.5\t6.5\n")
-    found = read(path, unit="m", pixel_size=(1.0, 1.0))
-    assert np.isnan(found.heights[1, 3])
-    assert np.isnan(found.heights).sum() == 1
-    assert found.heights[3].tolist() == [3.5, 4.5, 5.5, 6.5]
 
 
 def test_the_pitch_of_points_is_their_span_over_whole_steps(tmp_path: Path) -> None:

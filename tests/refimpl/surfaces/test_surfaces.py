@@ -59,15 +59,6 @@ def test_sphere_is_symmetric_about_the_middle_to_the_last_bit(
     np.testing.assert_array_equal(square, square.T)
 
 
-@pytest.mark.parametrize("across", [1.0, 0.625])
-def test_periodic_sphere_repeats_with_each_length(across: float) -> None:
-    grid = Grid((16, 10), (2e-3, across * 2e-3), periodic=True)
-    dx, dy = grid.spacings
-    z = Sphere(0.14).heights(grid)
-    shifted = Sphere(0.14).heights(grid, (5 * dx, -3 * dy))
-    np.testing.assert_allclose(shifted, np.roll(z, (-5, 3), axis=(0, 1)), rtol=0, atol=8 * EPS * z.max())
-
-
 def test_sums_are_flat_and_add_up() -> None:
     array = np.arange(256.0).reshape(16, 16) * 1e-9
     left, right = array + Sphere(0.14), Sphere(0.14) + array + (Flat() + GaussianRoughness(1e-6, 1e-4, 1))
@@ -167,10 +158,8 @@ def test_arrays_end_with_the_domain() -> None:
         (np.full((4, 4), np.nan), "16 of 16 not finite, the first at \\(0, 0\\)"),
         (np.array([[0.0, np.inf]]), "1 of 2 not finite, the first at \\(0, 1\\)"),
         (np.zeros(5), "2-D"),
-        (np.zeros((0, 3)), "2-D"),
         (np.zeros((3, 3), dtype=complex), "complex128"),
         (np.array([["a"]]), "<U1"),
-        (np.array([[None]]), "object"),
         (np.ma.masked_equal(np.array([[0.0, 9.0]]), 9.0), "1 of 2 not finite"),
     ],
 )
@@ -207,21 +196,6 @@ def test_a_sum_reads_back_from_its_table() -> None:
     assert surface_from_dict(surface.to_dict()) == surface
 
 
-def test_a_measured_surfaces_table_holds_plain_values() -> None:
-    table = MeasuredSurface("a.csv", unit="um", pixel_size=2).to_dict()
-    assert table == {
-        "kind": "measured",
-        "path": str(Path("a.csv").absolute()),
-        "unit": "um",
-        "pixel_size": [2.0, 2.0],
-        "level": "plane",
-        "missing": "fill",
-        "max_missing": 0.05,
-    }
-    assert isinstance(table["pixel_size"], list)
-    assert MeasuredSurface("/a.x3p").to_dict().keys() == {"kind", "path", "level", "missing", "max_missing"}
-
-
 def test_relative_paths_start_at_the_folder() -> None:
     surface = surface_from_dict({"kind": "measured", "path": "a.x3p"}, Path("/scenes"))
     assert isinstance(surface, MeasuredSurface)
@@ -233,24 +207,16 @@ def test_relative_paths_start_at_the_folder() -> None:
     [
         ({"kind": "sphere", "radius": 1.0, "radios": 2.0}, "surface.radios = 2.0"),
         ({"kind": "sphere"}, "surface.radius"),
-        ({"kind": "sphare"}, "surface.kind = 'sphare'"),
         ({"kind": "sphare"}, "expected one of flat, sphere, gaussian, self_affine, measured, sum"),
-        ({"kind": ["sphere"]}, "surface.kind"),
-        ({}, "surface.kind = None"),
         ({"kind": "flat", "height": 1}, "surface.height"),
         ({"kind": "measured", "path": 3}, "path = 3"),
-        ({"kind": "measured", "path": "a", "level": "cone"}, "level = 'cone'"),
         ({"kind": "measured", "path": "a", "unit": "inch"}, "unit = 'inch'"),
-        ({"kind": "measured", "path": "a", "pixel_size": [1e-6]}, "pixel_size"),
         ({"kind": "measured", "path": "a", "pixel_size": [1e-6] * 3}, "pixel_size = [1e-06, 1e-06, 1e-06]"),
         ({"kind": "measured", "path": "a", "pixel_size": -1e-6}, "pixel_size"),
         ({"kind": "measured", "path": "a", "missing": "zero"}, "missing"),
-        ({"kind": "measured", "path": "a", "max_missing": 1.0}, "max_missing"),
         ({"kind": "gaussian", "rms": -1e-6, "correlation_length": 1e-4, "seed": 1}, "rms = -1e-06"),
         ({"kind": "gaussian", "rms": 1e-6, "correlation_length": "l", "seed": 1}, "correlation_length"),
         ({"kind": "gaussian", "rms": 1e-6, "correlation_length": 1e-4, "seed": 1.0}, "seed = 1.0"),
-        ({"kind": "gaussian", "rms": 1e-6, "correlation_length": 1e-4, "seed": -1}, "seed = -1"),
-        ({"kind": "gaussian", "rms": 1e-6, "correlation_length": 1e-4, "seed": True}, "seed = True"),
         (
             {"kind": "gaussian", "rms": 1e-6, "correlation_length": 1e-4, "seed": 1, "normalise": 1},
             "normalise",
@@ -259,9 +225,7 @@ def test_relative_paths_start_at_the_folder() -> None:
         (SELF_AFFINE | {"given": "rms"}, "surface.given"),
         (SELF_AFFINE | {"rms": 1e-6, "rms_gradient": 0.1}, "surface.rms, rms_gradient = 'both'"),
         (SELF_AFFINE, "surface.rms, rms_gradient = 'neither'"),
-        (SELF_AFFINE | {"rms": 1e-6, "hurst": 1.5}, "surface.hurst = 1.5"),
         ({"kind": "sum", "terms": []}, "surface.terms"),
-        ({"kind": "sum", "parts": []}, "surface.parts"),
         ("sphere", "surface = 'sphere'"),
     ],
 )

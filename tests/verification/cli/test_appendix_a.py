@@ -18,6 +18,7 @@ WEDGE = "appendix-a wedge --r 1"
 PIXELS = "--unit um --pixel-size 1e-6"
 
 
+@pytest.mark.nightly
 def test_fem_prints_the_four_keys_and_agrees_with_the_strip_on_a_gentle_slope() -> None:
     """On a terminal, finite elements show their progress."""
     wave = "--slope-deg 0.5 --wavelength 20 --position 0.25 --nu 0.3 --offsets=-3,3 --json -"
@@ -80,12 +81,12 @@ def test_wedge_of_no_slope_is_the_half_plane() -> None:
     assert found["sigma_r"] == pytest.approx([-0.5 - 1 / math.pi], abs=1e-9)
     assert found["sigma_theta"] == pytest.approx([-0.5 + 1 / math.pi], abs=1e-9)
     assert found["tau_rtheta"] == pytest.approx([0.0], abs=1e-9)
-    for gamma in (0.1, 10.3, 33.3, 70.7):  # an angle on the face is inside
+    for gamma in (0.1, 33.3):  # an angle on the face is inside
         shown(f"{WEDGE} --gamma-deg {gamma} --theta-deg={gamma - 90},{90 - gamma},{round(90 - gamma, 6)}")
 
 
 def test_surface_states_every_numbers_error_and_advises(tmp_path: Path) -> None:
-    command = f"appendix-a surface table1-rough --grid 32 --plot {tmp_path}/map.png"
+    command = f"appendix-a surface table1-rough --grid 24 --plot {tmp_path}/map.png"
     found = answer(command)
     assert found["share_above_2_percent"] == 0.0
     assert found["advice"].startswith("keep the half-space")
@@ -117,7 +118,6 @@ def test_a_surface_file_is_judged_below_a_rigid_flat(tmp_path: Path) -> None:
     found = answer(f"{command} --nu 0.2 --E 5e9 --tau 3e6 --plot {tmp_path}/map.svg")
     assert "rigid flat" in found["assumed"]
     assert "E = 5 GPa, nu = 0.2, tau = 3 MPa, beta = 0.1" in found["assumed"]
-    assert "E = 200 GPa, nu = 0.3, tau = 0 MPa, beta = 0.1" in answer(command)["assumed"]
     assert 0.5 < found["share_above_2_percent"] <= 1.0
     assert found["numbers"]["normal_force"]["stated"] > 0
     assert found["evidence"].startswith("slopes of")

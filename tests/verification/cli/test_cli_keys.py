@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 
 from refimpl import InputError
-from refimpl.scene import key_texts, keys
-from refimpl.scene.keys import REQUIRED, SAMPLES, allowed_by, sample_scene, scene_keys
+from refimpl.scene.keys import REQUIRED, SAMPLES, sample_scene, scene_keys
 from refimpl.scene.scene_file import _OPTIONAL_KEYS, _SCENE_KEYS, scene_from_dict
 from refimpl.surfaces import surface_from_dict
 from refimpl.surfaces.from_table import KINDS
@@ -78,27 +77,16 @@ def test_stated_defaults_are_what_is_used() -> None:
     assert study_from_dict({"scene": "table1-rough", **whole}) == bare
 
 
-def test_a_key_without_a_text_and_a_text_without_a_key_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delitem(key_texts.SURFACES["gaussian"], "lay")
-    with pytest.raises(LookupError, match="lay"):
-        scene_keys()
-    monkeypatch.setitem(key_texts.SURFACES["gaussian"], "lay", ("rad", "angle"))
-    monkeypatch.setitem(key_texts.FRICTION, "gamma", ("", "none"))
-    with pytest.raises(LookupError, match="gamma"):
-        scene_keys()
-
-
-def test_a_wrong_value_that_is_taken_is_reported() -> None:
-    with pytest.raises(LookupError, match="load"):
-        allowed_by(lambda table: table, {}, "load")
-    assert keys.as_toml("x") == '"x"'
-
-
 def test_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["keys", "hurst"]) == 0
     printed = capsys.readouterr().out
     assert printed.startswith("[surface, self_affine]\n  hurst")
     assert "0 < H <= 1" in printed
+    assert main(["keys", "gaussian", "--json", "-"]) == 0  # the name of a table
+    document = json.loads(capsys.readouterr().out)
+    assert [key["name"] for key in document["surface, gaussian"]] == [
+        key.name for key in TABLES["surface, gaussian"]
+    ]
     assert main(["keys", "no-such-word"]) == 1
     assert capsys.readouterr().out == "no key has this word; what is not modelled: docs/limits.md\n"
     assert main(["keys", "tau", "--json", "-"]) == 0

@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 import json
 import math
-import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -23,23 +22,6 @@ from refimpl.surfaces.surface import Detail
 from tests.verification.cli.commands import answer, shown
 from verification.cli import budget, explain
 
-STEEP = """
-load = 0.5
-side = 1.0e-3
-[upper.material]
-E = "rigid"
-nu = 0.3
-[lower.material]
-E = 1e9
-nu = 0.0
-[[lower.surface]]
-kind = "gaussian"
-rms = 10e-6
-correlation_length = 100e-6
-seed = 1
-[friction]
-beta = 0.1
-"""
 SMALL = (  # Hertz radius 165 um on a half side of 50 um
     "load = 5.0\nside = 1e-4\n[upper]\nmaterial = {E = 200e9, nu = 0.3}\n"
     "surface = [{kind = 'sphere', radius = 0.1}]\n[lower]\nmaterial = {E = 118e9, nu = 0.34}\n"
@@ -58,7 +40,7 @@ def toleranced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("size", ["--grid 64", "--accuracy 0.01"])
 def test_a_plan_is_shown_in_100_columns_without_a_solve(size: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr(rf, "solve")
-    for scene in rf.shipped_scenes():
+    for scene in ("hertz", "metal-polymer"):
         text = shown(f"solve {scene} {size} --explain")
         assert max(map(len, text.splitlines())) <= 100
         assert all(name in text for name in LABELS.values())
@@ -67,43 +49,15 @@ def test_a_plan_is_shown_in_100_columns_without_a_solve(size: str, monkeypatch: 
 
 
 @pytest.mark.parametrize(
-    ("text", "options", "says"),
+    ("options", "says"),
     [
-        (SMALL, "--accuracy 0.01", "is not to be reached: the domain cuts the contact off"),
-        # 0.7 tan(slope) for nu = 0 on a rigid flat
-        (STEEP, "--grid 32", "slopes of 19 degrees"),
-        (STEEP, "--grid 32", "N at a given approach may be off by 24%"),
-        (SMALL, "--grid 40x40", "40 x 40 elements"),
+        ("--accuracy 0.01", "is not to be reached: the domain cuts the contact off"),
+        ("--grid 40x40", "40 x 40 elements"),
     ],
 )
-def test_limits_are_stated_before_anything_is_solved(
-    text: str, options: str, says: str, tmp_path: Path
-) -> None:
-    (tmp_path / "scene.toml").write_text(text)
+def test_limits_are_stated_before_anything_is_solved(options: str, says: str, tmp_path: Path) -> None:
+    (tmp_path / "scene.toml").write_text(SMALL)
     assert says in " ".join(shown(f"solve {tmp_path}/scene.toml {options} --explain").split())
-
-
-def test_terms_without_friction_and_slopes_are_out() -> None:
-    lines = shown("solve hertz --grid 64 --explain").splitlines()
-    for name in LABELS.values():
-        assert " out " in next(line for line in lines if line.strip().startswith(name))
-    assert any("no friction" in line for line in lines)
-
-
-def test_the_forecast_names_the_grid_that_the_refinement_ends_on() -> None:
-    """Sizes are four an octave: one step off is 17 to 25 per cent."""
-    document = answer("solve table1-smooth --accuracy 0.01 --explain --no-tilted")
-    expected = document["forecast"]
-    last = rf.solve(rf.read_scene("table1-smooth"), accuracy=0.01, tilted=False).details.problem.grid.shape[0]
-    assert (expected["solved"], expected["refusal"]) == ([[32, 32], [64, 64]], "")
-    assert expected["grid"][0] == pytest.approx(last, rel=0.26)
-    assert min(expected["memory"], expected["seconds"]) > 0
-    terms = {term["name"]: term for term in document["terms"]}
-    assert document["budget"] == 0.5 * document["demand"] == 0.005
-    assert document["grid"] is None
-    assert terms["coupled"]["effect"]["area"] > 0
-    assert not terms["tilted"]["included"]
-    assert answer("solve table1-rough --grid 64 --explain")["resolution"]["required"] > 4
 
 
 def test_a_term_has_its_changes_of_mu_and_of_the_area_in_this_order() -> None:
@@ -122,7 +76,7 @@ def test_missing_slopes_fall_with_the_square_of_the_elements(monkeypatch: pytest
 
 @pytest.mark.usefixtures("toleranced")
 def test_a_scene_with_tolerances_gets_a_budget() -> None:
-    printed = shown("solve scene.toml --grid 48 --json found.json")
+    printed = shown("solve scene.toml --grid 24 --json found.json")
     for word in ("numerical", "input", "friction.tau, 0.1", "sampling", "model form", "cosines", "total"):
         assert word in printed
     assert max(map(len, printed.splitlines())) <= 100
@@ -131,32 +85,21 @@ def test_a_scene_with_tolerances_gets_a_budget() -> None:
     assert mu["inputs"]["friction.tau"] == pytest.approx(mu["input"])
     assert mu["total"] == pytest.approx(mu["model_form"] + math.hypot(mu["numerical"], mu["input"]))
     assert set(stated["derivatives"]) == set(NUMBERS)
-    assert answer("solve scene.toml --grid 16")["budget"]  # standard output holds one document
-
-
-@pytest.mark.usefixtures("toleranced")
-def test_a_pipe_is_given_one_document() -> None:
-    os.mkfifo("found")
-    kept = os.open("found", os.O_RDWR)  # a reader that does not leave; the document fits into the pipe
-    try:
-        shown("solve scene.toml --grid 16 --json found")
-        assert "budget" in json.loads(os.read(kept, 2**16))
-    finally:
-        os.close(kept)
+    assert answer("solve scene.toml --grid 12")["budget"]  # standard output holds one document
 
 
 def test_a_budget_is_of_what_is_asked_and_repeats_no_warning(folder: Path) -> None:
     """Elements exceed a quarter of a correlation length; a rigid body has no modulus to derive by."""
-    assert "budget" not in answer("solve scene.toml --grid 32")
+    assert "budget" not in answer("solve scene.toml --grid 12")
     rigid = Path("oblong.toml").read_text().replace("200e9", '"rigid"')
     Path("rigid.toml").write_text(rigid)
-    assert "upper.material.E" not in json.dumps(answer("solve rigid.toml --grid 40x20 --budget")["budget"])
+    assert "upper.material.E" not in json.dumps(answer("solve rigid.toml --grid 20x10 --budget")["budget"])
     rough = rf.GaussianRoughness(rms=1e-7, correlation_length=5e-5, seed=3)
     smooth = rf.read_scene("table1-smooth")
     Path("rough.toml").write_text(
         rf.scene_to_toml(replace(smooth, lower=rf.Body(smooth.lower.material, rough)))
     )
-    printed = shown("solve rough.toml --grid 48 --budget --json found.json")
+    printed = shown("solve rough.toml --grid 24 --budget --json found.json")
     assert printed.count("warning (correlation length)") == 1
     stated = json.loads(Path("found.json").read_text())["warnings"]
     assert sum("correlation length" in w["text"] for w in stated) == 1
@@ -177,7 +120,6 @@ def test_an_interrupted_budget_leaves_the_solution(monkeypatch: pytest.MonkeyPat
     ("options", "status", "why"),
     [
         ("--approach 3e-6", 0, "at a prescribed approach"),
-        ("--approach 0", 1, "at a prescribed approach"),
         ("--tolerance 1e-300 --budget", 1, "does not hold"),
     ],
 )

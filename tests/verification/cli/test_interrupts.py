@@ -19,8 +19,7 @@ from pathlib import Path
 import pytest
 
 from refimpl.solvers.production.projected_cg import ProjectedCG
-from tests.reports import sample
-from tests.verification.cli.children import LONG, Ended, forked, one_line, started
+from tests.verification.cli.children import LONG, Ended, forked, one_line
 from tests.verification.cli.commands import run
 from verification.cli import main, solve
 from verification.output import files
@@ -67,7 +66,7 @@ def test_an_interrupted_solve_leaves_the_old_result_and_no_other_file(
 @pytest.mark.nightly
 @pytest.mark.parametrize(
     ("words", "delay"),
-    [(LONG, 0.15), (LONG, 0.6), (["verify", "--only", "*s*/*"], 1.2), (["verify", "--only", "*s*/*"], 3.0)],
+    [(LONG, 0.15), (LONG, 0.6), (["verify", "--only", "*s*/*"], 3.0)],
 )
 def test_an_interrupt_ends_the_start_and_a_verification_at_once(
     words: list[str], delay: float, tmp_path: Path
@@ -85,35 +84,6 @@ def test_an_interrupt_ends_the_start_and_a_verification_at_once(
     assert time.monotonic() - begun < 15
 
 
-def children_of(pid: int) -> list[int]:
-    return [int(found) for found in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
-
-
-def ignores_interrupts(pid: int) -> bool:
-    status = dict(line.split(":", 1) for line in Path(f"/proc/{pid}/status").read_text().splitlines())
-    return bool(int(status["SigIgn"], 16) >> (signal.SIGINT - 1) & 1)
-
-
-@pytest.mark.nightly
-@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="processes are looked up in /proc")
-def test_an_interrupted_map_ends_at_once_with_its_workers(tmp_path: Path) -> None:
-    tail = ["--slopes-deg", "2.5,5,10,20", "--wavelengths", "8,16,32,64", "--jobs", "2", "--json", "m.json"]
-    child = started(["appendix-a", "map", *tail], tmp_path)
-    deadline = time.monotonic() + 60
-    while time.monotonic() < deadline:
-        workers = children_of(child.pid)
-        if len(workers) == 2 and all(map(ignores_interrupts, workers)):
-            break
-        time.sleep(0.05)
-    time.sleep(1.0)  # Python loses an interrupt that comes within a fork
-    for process in (*workers, child.pid):  # as a terminal does
-        os.kill(process, signal.SIGINT)
-    _, err = child.communicate(timeout=20)  # the whole map takes minutes; the workers hold the pipes too
-    assert (child.returncode, err) == (130, "")
-    assert not any(Path(f"/proc/{pid}").exists() for pid in workers)
-    assert list(tmp_path.iterdir()) == []
-
-
 def full_disk() -> None:
     """No file may grow beyond 500 bytes; the signal for it is ignored, so that the write says EFBIG.
 
@@ -124,11 +94,10 @@ def full_disk() -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500))
 
 
-@pytest.mark.parametrize("option", ["--json", "--vtk"])
-def test_a_full_disk_costs_the_new_file_and_not_the_old(tmp_path: Path, option: str) -> None:
-    path = tmp_path / {"--json": "s.json", "--vtk": "s.vtu"}[option]
+def test_a_full_disk_costs_the_new_file_and_not_the_old(tmp_path: Path) -> None:
+    path = tmp_path / "s.json"
     path.write_text("old")
-    command = ["solve", "hertz", "--grid", "16", option, str(path)]
+    command = ["solve", "hertz", "--grid", "8", "--json", str(path)]
     one_line(forked(lambda: main(command), before=full_disk), "File too large")
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]
@@ -163,7 +132,7 @@ def test_a_folder_that_refuses(
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("name", ["none/s.json", ".", 300 * "a", f"a.{250 * 'b'}", "/proc/s.json"])
+@pytest.mark.parametrize("name", ["none/s.json", ".", 300 * "a", "/proc/s.json"])
 def test_an_unwritable_place_is_refused_before_any_work(name: str, tmp_path: Path) -> None:
     done = run(f"{' '.join(LONG)} --json {tmp_path / name}")
     assert (done.status, done.out, done.err.count("\n")) == (2, "", 1)
@@ -171,30 +140,26 @@ def test_an_unwritable_place_is_refused_before_any_work(name: str, tmp_path: Pat
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("name", ["s.json", pytest.param("-", marks=pytest.mark.nightly)])
-def test_a_closed_pipe_ends_quietly_and_costs_no_file(name: str, tmp_path: Path) -> None:
-    arguments = [sys.executable, "-c", START, "solve", "hertz", "--grid", "8", "--json", name]
+def test_a_closed_pipe_ends_quietly_and_costs_no_file(tmp_path: Path) -> None:
+    arguments = [sys.executable, "-c", START, "solve", "hertz", "--grid", "8", "--json", "s.json"]
     reader, writer = os.pipe()
     os.close(reader)
     ended = subprocess.run(arguments, cwd=tmp_path, stdout=writer, stderr=subprocess.PIPE)
     os.close(writer)
     assert (ended.returncode, ended.stderr) == (0, b"")
-    if name != "-":
-        assert json.loads((tmp_path / name).read_text())["status"] == "converged"
+    assert json.loads((tmp_path / "s.json").read_text())["status"] == "converged"
 
 
 @pytest.mark.parametrize(
     "command",
     [
         "solve hertz --grid 8",
-        "sweep study.toml",
+        pytest.param("sweep study.toml", marks=pytest.mark.nightly),
         pytest.param("verify --only kernels/normal-50-digits", marks=pytest.mark.nightly),
-        pytest.param("report --results r.json --output out", marks=pytest.mark.nightly),
     ],
 )
 def test_a_closed_standard_error_changes_nothing(command: str, tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text('scene = "hertz"\n[vary]\ngrid = [4]\n')
-    (tmp_path / "r.json").write_text(json.dumps(sample.results(sample.case("a/1"))))
     done = subprocess.run(
         ["sh", "-c", f'exec "$@" {command} 2>&-', "sh", sys.executable, "-c", START],
         cwd=tmp_path,
@@ -204,16 +169,15 @@ def test_a_closed_standard_error_changes_nothing(command: str, tmp_path: Path) -
     assert done.stdout
 
 
-@pytest.mark.parametrize("out", ["-", pytest.param("r.json", marks=pytest.mark.nightly)])
-def test_a_store_whose_name_standard_output_cannot_encode(out: str, tmp_path: Path) -> None:
+@pytest.mark.nightly
+def test_a_store_whose_name_standard_output_cannot_encode(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text('scene = "hertz"\n[vary]\ngrid = [4]\n')
     name = os.fsdecode(b"s\xff\x1b\xc3\xa9.sqlite")
-    tail = ["sweep", "study.toml", "--store", name, "--workers", "1", "--json", out]
+    tail = ["sweep", "study.toml", "--store", name, "--workers", "1", "--json", "-"]
     done = subprocess.run(
         [sys.executable, "-c", START, *tail], cwd=tmp_path, capture_output=True,
         env=os.environ | {"PYTHONIOENCODING": "ascii"},
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (0, b"")
     assert b"\x1b" not in done.stdout
-    text = done.stdout.decode() if out == "-" else (tmp_path / out).read_text()
-    assert json.loads(text)["store"] == name
+    assert json.loads(done.stdout)["store"] == name

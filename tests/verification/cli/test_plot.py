@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -19,7 +17,6 @@ from tests.verification.cli.commands import run
 from verification.cli import plot
 from verification.cli.plot import gap_histogram, pressure_histogram, profile
 from verification.cli.plot_maps import (
-    View,
     domain_map,
     gap_map,
     peak_of,
@@ -104,9 +101,7 @@ def test_blocks_of_a_fine_grid_keep_every_contact() -> None:
     assert pooled(1.0 + field, lowest=True)[0].min() == 1.0
 
 
-@pytest.mark.parametrize(
-    ("value", "name"), [(999.0, "Pa"), (1e3, "kPa"), (0.8e9, "MPa"), (1e9, "GPa"), (-2e6, "MPa")]
-)
+@pytest.mark.parametrize(("value", "name"), [(999.0, "Pa"), (1e3, "kPa"), (-2e6, "MPa")])
 def test_units_are_at_scale(value: float, name: str) -> None:
     assert unit_at_scale(value, PRESSURES).name == name
 
@@ -174,27 +169,18 @@ def test_the_legend_explains_what_is_there() -> None:
     assert f"{100 * capped.plastic_share:.3g} % at the hardness" in axes.get_title()
 
 
-def test_numbers_have_their_error_bars_and_units_at_scale() -> None:
-    lines = plot.numbers_of(solved(32))
-    assert lines[0].startswith("μ = 0.1")
-    assert "±" in lines[0]
-    assert lines[3].endswith("MPa")
-    assert "sliding at 0° from x" in lines
-    assert lines[-1] == "converged, 32 × 32 elements"
-
-
 MAGIC = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 
 
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize(
     ("command", "suffix"),
     [
         ("solve metal-polymer --grid 16", ".png"),
-        ("solve hertz --grid 16 --approach 0", ".png"),  # no contact
+        ("solve hertz --grid 8 --approach 0", ".png"),  # no contact
         ("solve hertz --grid 16 --size 4e-3x2e-4", ".png"),  # slender
-        ("appendix-a surface hertz --grid 16", ".svg"),
-        ("sweep study.toml --workers 1", ".pdf"),
-        ("sweep study.toml --workers 1 --x grid --by load", ".svg"),
+        ("sweep study.toml", ".pdf"),
+        ("sweep study.toml --x grid --by load", ".svg"),
     ],
 )
 def test_pictures_are_written_in_every_format(command: str, suffix: str, folder: Path) -> None:
@@ -203,11 +189,3 @@ def test_pictures_are_written_in_every_format(command: str, suffix: str, folder:
     picture = Path(f"picture{suffix}").read_bytes()
     assert picture.startswith(MAGIC[suffix])
     assert len(picture) > 3000
-
-
-@pytest.mark.parametrize(("size", "slender"), [((3e-3, 1e-3), False), ((1e-3, 3.01e-3), True)])
-def test_windows_of_more_than_three_to_one_are_drawn_to_two_scales(
-    size: tuple[float, float], slender: bool
-) -> None:
-    made: Any = SimpleNamespace(size=size)
-    assert View.is_slender.fget(made) is slender  # type: ignore[attr-defined]

@@ -15,7 +15,6 @@ from typing import Any
 import meshio
 import numpy as np
 import pytest
-from PIL import Image
 
 import refimpl as rf
 from refimpl.solution.patches import Patch
@@ -115,7 +114,6 @@ UNUSABLE = {
     [
         ({}, [], 0),
         (UNUSABLE, list(UNUSABLE), 1),
-        ({"max_pressure": math.inf}, ["max_pressure"], 1),
         ({"binormal_force": 0.01}, [], 0),  # Q is zero by symmetry, F about 0.5 N
         ({"binormal_force": 10.0}, ["binormal_force"], 1),
     ],
@@ -135,10 +133,6 @@ def test_a_number_whose_bar_exceeds_half_of_it_is_not_usable(
         assert re.search(r"p_max +\d\d?0* +\+- 3e\+07 \(not usable\) +MPa", printed)
 
 
-def test_a_frictionless_scene_is_usable() -> None:
-    assert "not usable" not in shown("solve hertz --grid 32 --strict")
-
-
 @pytest.mark.parametrize("finished", [True, False])
 def test_an_interrupt_shows_the_last_finished_grid(
     finished: bool, replaced: Replace, monkeypatch: pytest.MonkeyPatch
@@ -156,25 +150,10 @@ def test_an_interrupt_shows_the_last_finished_grid(
     assert not Path("s.json").exists()
 
 
-@pytest.mark.parametrize("terminal", [True, False])
-def test_progress_is_for_terminals(terminal: bool, folder: Path) -> None:
-    written = run("solve scene.toml --grid 16", terminal=terminal).err
-    assert ("16 x 16 elements, 1 transforms" in written) is terminal
-    assert written.endswith(f"\r{'':<78}\r") is terminal
-    assert bool(written) is terminal
-
-
-def test_an_accuracy_is_met_by_the_error_bar_that_is_shown(folder: Path) -> None:
-    bar = re.search(r"friction coefficient mu +(\S+) +\+- (\S+)", shown("solve scene.toml --accuracy 0.05"))
-    assert bar is not None
-    assert 0 < float(bar[2]) <= 0.055 * float(bar[1])  # the table rounds the bar to one digit
-
-
 @pytest.mark.parametrize(
     ("words", "grid", "size"),
     [
         ("scene.toml --grid 48", 48, {"side": 1e-3}),
-        ("oblong.toml --grid 48x20", [48, 20], {"size": [2e-3, 1e-3]}),
         ("oblong.toml --grid 30 --size 1e-3x3e-3", [10, 30], {"size": [1e-3, 3e-3]}),
     ],
 )
@@ -202,9 +181,7 @@ def test_without_contact_mu_is_not_a_number_in_words(folder: Path) -> None:
     assert json.loads(Path("s.json").read_text())["friction_coefficient"] is None
 
 
-@pytest.mark.parametrize(
-    ("words", "included"), [("", True), ("--plastic on", True), ("--plastic off", False)]
-)
+@pytest.mark.parametrize(("words", "included"), [("", True), ("--plastic off", False)])
 def test_pressures_end_at_the_hardness(words: str, included: bool, folder: Path) -> None:
     Path("hard.toml").write_text(SCENE.replace("nu = 0.38", "nu = 0.38\nhardness = 8e6"))
     table = shown(f"solve hard.toml --grid 32 --json hard.json {words}")
@@ -216,10 +193,12 @@ def test_pressures_end_at_the_hardness(words: str, included: bool, folder: Path)
     assert document["uncertainty"]["plastic_area"]
 
 
-@pytest.mark.parametrize("suffix", [".vtk", ".vtu"])
-def test_vtk_holds_both_surfaces_and_the_whole_load(suffix: str, folder: Path) -> None:
-    shown(f"solve oblong.toml --grid 48x20 --vtk s{suffix} --no-oblique")
-    mesh = meshio.read(f"s{suffix}")
+def test_vtu_holds_both_surfaces_and_the_whole_load(folder: Path) -> None:
+    assert (
+        "48 x 20 elements"
+        in run("solve oblong.toml --grid 48x20 --vtk s.vtu --no-oblique", terminal=True).err
+    )
+    mesh = meshio.read("s.vtu")
     fields, corners = mesh.point_data, mesh.cells_dict["quad"]
     assert set(fields) == {"pressure", "traction", "gap", "height", "body"}
     assert (len(mesh.points), len(corners)) == (2 * 48 * 20, 2 * 47 * 19)
@@ -262,18 +241,6 @@ def test_npz_netcdf_and_patches_agree(tmp_path: Path, monkeypatch: pytest.Monkey
         np.testing.assert_array_equal(dataset.pressure, pressure)
 
 
-def test_coordinates_are_the_grids_along_x_and_y(tmp_path: Path) -> None:
-    """4 x 3 elements on 8 x 3 um."""
-    steel = rf.Material(E=200e9, nu=0.3)
-    bodies = rf.Body(steel, rf.Sphere(1e-3)), rf.Body(steel, rf.Flat())
-    scene = rf.Scene(*bodies, rf.Friction(), load=1e-5, size=(8e-6, 3e-6))
-    arrays.write_npz(rf.solve(scene, (4, 3), oblique=False), tmp_path / "s.npz")
-    with np.load(tmp_path / "s.npz") as found:
-        assert found["x"] == pytest.approx([1e-6, 3e-6, 5e-6, 7e-6])
-        assert found["y"] == pytest.approx([0.5e-6, 1.5e-6, 2.5e-6])
-        assert found["pressure"].shape == (4, 3)
-
-
 def test_patches_have_units_in_their_headers(tmp_path: Path) -> None:
     patch = Patch(1, 4, 2e-6, 3.0, 1.5, 2.5, 4e-4, 5e-4, 0.25)
     made: Any = SimpleNamespace(patches=lambda: [patch])
@@ -282,15 +249,6 @@ def test_patches_have_units_in_their_headers(tmp_path: Path) -> None:
         "label,elements,area [m^2],load [N],mean_pressure [Pa],max_pressure [Pa],x [m],y [m],plastic_share",
         "1,4,2e-06,3.0,1.5,2.5,0.0004,0.0005,0.25",
     ]
-
-
-def test_the_picture_is_a_picture(folder: Path) -> None:
-    shown("solve scene.toml --grid 32 --plot s.png")
-    with Image.open("s.png") as image:
-        assert min(image.size) > 800
-        colours = image.convert("RGB").getcolors(maxcolors=image.width * image.height)
-        assert colours is not None
-        assert len(colours) > 50
 
 
 def test_hertz_of_a_ball_in_a_cup_and_of_no_ball() -> None:
@@ -308,9 +266,7 @@ def test_hertz_of_a_ball_in_a_cup_and_of_no_ball() -> None:
         assert hertz_of(without, load=1.0) is None
 
 
-def test_warnings_are_printed_before_notes_and_notes_take_a_line_each(
-    folder: Path,
-) -> None:
+def test_warnings_are_printed_before_notes_and_notes_take_a_line_each(folder: Path) -> None:
     """A copper flat that yields, under a ball without a hardness: the notes of yield and input follow."""
     scene = rf.read_scene("scene.toml")
     copper = rf.Material(118e9, 0.34, hardness=50e6)

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from itertools import product
-
-import numpy as np
 import pytest
 
-import refimpl as rf
 from tests.refimpl.accuracy.made_up import AREA_LIMIT, BETA, DMU_DA, made_up
 from verification.coverage import classes
 from verification.coverage.building import Solved, as_corrected
-from verification.coverage.class_scenes import CLASSES, scene
 
 MU = BETA + DMU_DA * AREA_LIMIT
 
@@ -48,28 +43,3 @@ def test_a_summary_counts_bars_known_values() -> None:
     assert every["bias_over_bar"] == pytest.approx(1.6 / 9.826, rel=1e-5)
     assert every["p"] == pytest.approx(1 - 0.92**4, rel=1e-5)  # probability of three of four, or fewer
     assert (every["longest_miss"], every["unbounded"]) == (pytest.approx(3.0), 0.0)
-
-
-def test_bars_that_hold_more_often_than_they_need_are_no_failure() -> None:
-    """All of 100: p is 1, for only too few count. 90 of 100: P(at most 90, each at 92 %) is 0.2780."""
-    row = {"error": 0.1, "bar": 0.2, "reference_bound": 0.0, "too_large": True}
-    missed = row | {"error": 0.3}
-    assert classes.summary(100 * [row])["p"] == pytest.approx(1.0)
-    assert classes.summary(90 * [row] + 10 * [missed])["p"] == pytest.approx(0.2780, abs=5e-5)
-
-
-@pytest.mark.nightly
-def test_the_reference_is_where_the_summed_mu_goes() -> None:
-    """Richardson's extrapolation from 512 and 1024 has an error of order h as its only premise.
-
-    Its own scatter is in the differences, in bars on 96 elements: their mean would show the rule's bias.
-    """
-    off = []
-    for kind, seed in product(CLASSES, range(960000, 960003)):
-        coarse, fine, finest = (rf.solve(scene(kind, seed), M) for M in (96, 512, 1024))
-        found, _ = classes.reference(fine.details.features, "friction_coefficient")
-        limit = 2 * finest.friction_coefficient - fine.friction_coefficient
-        off.append((found - limit) / coarse.error("friction_coefficient_corrected"))
-    assert abs(np.mean(off)) < 0.05
-    assert np.median(np.abs(off)) < 0.1
-    assert np.quantile(np.abs(off), 0.95) < 0.35

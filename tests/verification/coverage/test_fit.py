@@ -8,11 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import refimpl as rf
 from tests.refimpl.accuracy.made_up import made_up
 from verification.coverage import fit
-from verification.coverage.building import Solved, as_corrected, exact_numbers, merged, pack, unpacked
-from verification.coverage.class_scenes import CLASSES, scene
+from verification.coverage.building import Solved, as_corrected, merged, pack, unpacked
+from verification.coverage.class_scenes import CLASSES
 from verification.coverage.likelihood import fit as likeliest
 
 
@@ -24,15 +23,6 @@ def test_mean_and_scales_that_errors_were_drawn_with_are_found() -> None:
     assert found.freedom == 4.0
     assert abs(found.mean[0] - 0.3) < 3 * found.mean_error[0] < 0.1
     assert np.all(np.abs(found.scale - [0.2, 0.5]) < 3 * found.scale_error)
-
-
-def test_a_rounded_punch_has_the_area_of_its_closed_form() -> None:
-    """Within the counted edge: a tenth of an element of 32 per face."""
-    one = scene("rounded punches", 3)
-    solved, exact = rf.solve(one, grid=128), exact_numbers(one)
-    assert solved.contact_area_corrected == pytest.approx(exact["contact_area"], rel=0.02)
-    assert solved.friction_coefficient_corrected == pytest.approx(exact["friction_coefficient"], rel=0.02)
-    assert exact_numbers(scene("pads", 3)) == {}
 
 
 def test_stored_features_give_the_same_excess_and_bars(tmp_path: Path) -> None:

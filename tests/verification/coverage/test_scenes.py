@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,28 +10,13 @@ import pytest
 import refimpl as rf
 from refimpl.grid import Array
 from verification.coverage.drawing import Barrel, Wave, Waves, measured_like
-from verification.coverage.scenes import CLASSES, Drawn, random_scene
+from verification.coverage.scenes import CLASSES, random_scene
 
 SIDE = 1e-3
 DRAWN = {
     kind: [random_scene(8 * k + place) for k in range(40)] for place, kind in enumerate(CLASSES)
 }  # classes take turns
 ALL = [drawn for several in DRAWN.values() for drawn in several]
-
-
-def part(drawn: Drawn, body: str, kind: type) -> Any:
-    (found,) = [part for part in drawn.scene.parts(body) if isinstance(part, kind)]
-    return found
-
-
-def wave(drawn: Drawn, body: str = "upper") -> Waves:
-    found: Waves = part(drawn, body, Waves)
-    return found
-
-
-def rough(drawn: Drawn, body: str = "upper") -> rf.GaussianRoughness:
-    found: rf.GaussianRoughness = part(drawn, body, rf.GaussianRoughness)
-    return found
 
 
 @pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
@@ -58,19 +42,6 @@ def test_shares_of_materials_and_friction() -> None:
         (alike, 0.2), (no_tau.mean(), 0.2), (no_beta.mean(), 0.2), ((no_tau & no_beta).mean(), 0.1)
     ):  # fmt: skip
         assert abs(share - expected) < 3 * math.sqrt(expected / 320)  # three standard deviations at least
-
-
-def test_whole_numbers_of_waves_and_seeds_of_roughness() -> None:
-    """Seeds of roughness are twice the scene's, and one more of the lower body where both are rough."""
-    wavy = [wave(drawn, "lower").numbers for drawn in DRAWN["wavy ball"]]
-    assert all((min(n), max(n)) == (2, 11) for n in zip(*wavy, strict=True))
-    assert any(n != m for n, m in wavy)
-    assert {wave(drawn).numbers for drawn in DRAWN["periodic waves"]} == {(1, 1), (2, 2), (3, 3)}
-    for kind, body, odd in (
-        ("rough ball", "lower", 0), ("both rough", "upper", 0), ("both rough", "lower", 1),
-        ("periodic rough", "upper", 0),
-    ):  # fmt: skip
-        assert all(rough(drawn, body).seed == 2 * drawn.seed + odd for drawn in DRAWN[kind])
 
 
 def spectrum(z: Array) -> tuple[Array, Array]:

@@ -1,4 +1,4 @@
-"""The axisymmetric solution under a cap, and the published laws, against numbers by hand."""
+"""The axisymmetric solution under a cap, and the published law, against numbers by hand."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ import pytest
 from verification.exact.axisymmetric import displacement
 from verification.exact.capped_sphere import capped_sphere, disc_displacement, plastic_limit
 from verification.exact.hertz import Sphere
-from verification.exact.sphere_plasticity import jackson_green, kogut_etsion
+from verification.exact.sphere_plasticity import kogut_etsion
 
 SPHERE = Sphere(70.0, 0.14, 8.8e10)
 
 
-@pytest.mark.parametrize("r", [0.0, 0.3, 0.999, 1.0, 1.7, 20.0])
+@pytest.mark.parametrize("r", [0.0, 0.999, 1.7])
 def test_a_loaded_circle_displaces_as_the_quadrature_says(r: float) -> None:
     exact, _ = displacement(lambda s: mp.mpf(1), 1.0, r, 1.0)
     assert disc_displacement(np.array([r]), np.array([1.0]))[0] == pytest.approx(exact, rel=1e-10)
@@ -49,22 +49,10 @@ def test_half_of_hertz_is_nearly_the_plastic_limit() -> None:
     assert capped_sphere(SPHERE, hardness).approach == pytest.approx(approach, rel=2e-5)
 
 
-def test_the_published_laws_begin_with_hertz_and_end_at_the_hardness() -> None:
+def test_the_published_law_begins_with_hertz_and_ends_at_the_hardness() -> None:
     assert kogut_etsion(1.0) == (1.0, 1.0)
-    assert jackson_green(1.5, 0.004, 0.3) == (1.5**1.5, 1.5)
     end = kogut_etsion(110.0)
     mean_over_hardness = 2 / 3 * (0.454 + 0.41 * 0.3) * end.load / end.area
     assert mean_over_hardness == pytest.approx(1.0, abs=0.01)
     with pytest.raises(ValueError, match="ends at 110"):
         kogut_etsion(111.0)
-
-
-def test_jackson_and_green_by_hand() -> None:
-    """At 100, Y / E* = 0.004, nu = 0.3: C = 1.6149, area 100 (100/1.9)^0.15350 = 183.75, a / R = 0.13755."""
-    law = jackson_green(100.0, 0.004, 0.3)
-    assert law.area == pytest.approx(183.7, rel=1e-3)
-    hardness = 2.84 * (1 - math.exp(-0.82 * 0.13755**-0.7))
-    load = 1000 * math.exp(-0.25 * 100 ** (5 / 12)) + 400 * hardness / 1.6149 * (
-        1 - math.exp(-(100 ** (5 / 9)) / 25)
-    )
-    assert law.load == pytest.approx(load, rel=1e-3)

@@ -64,11 +64,11 @@ FAULTS = {
 @pytest.mark.parametrize(
     ("fault", "slugs"),
     [
-        ("coupling reversed", ("full-contact-sliding", "sliding-wave-shift", "sheared-sphere-shift")),
-        ("one per cent stiffer", ("hertz-ellipse-peak", "square-punch-stiffness", "jgh-approach")),
+        ("coupling reversed", ("full-contact-sliding", "sliding-wave-shift")),
+        ("one per cent stiffer", ("jgh-approach", "hertz-ellipse-outside")),
         ("without tau", ("sheared-sphere-shift", "coupled-indentation")),
-        ("transposed", ("hertz-ellipse-pressure", "full-contact-sliding")),
-        ("half an element off", ("cone-pressure", "full-contact-rough")),
+        ("transposed", ("full-contact-sliding",)),
+        ("half an element off", ("full-contact-rough",)),
         ("single precision", ("westergaard-full", "full-contact-rough")),
     ],
 )

@@ -9,9 +9,8 @@ import pytest
 
 import refimpl as rf
 from refimpl.model.materials import Pair
-from tests.documents import ROOT
 from verification.cases.validation import experiments as cases
-from verification.experiments.comparison import NAMES, Point, measured, repeated
+from verification.experiments.comparison import Point, measured, repeated
 from verification.experiments.predictions import adhesive, exponent, increment, points, scene_and_tolerances
 from verification.framework.case import Disproved
 
@@ -20,20 +19,6 @@ def test_e_is_within_what_is_unknown_of_solver_inputs_and_measurement() -> None:
     point = Point("load", 10.0, 3.0, 14.9, 0.0, 4.0)
     assert (point.error, point.uncertainty, point.within) == (pytest.approx(4.9), 5.0, True)
     assert not Point("load", 10.0, 3.0, 15.1, 0.0, 4.0).within
-
-
-def test_half_widths_are_students() -> None:
-    (first, _), (last, half) = repeated([[1.0, 2.0], [2.0, 4.0], [3.0]])
-    assert (first, last) == (2.0, 3.0)
-    assert half == pytest.approx(12.7062 * np.sqrt(2) / np.sqrt(2), rel=1e-5)  # t of one degree of freedom
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_every_measured_file_states_its_source_and_its_reduction(name: str) -> None:
-    data = measured(name)
-    texts = [data[key] for key in ("title", "source", "fitted", "reduction", "left_out")]
-    assert min(map(len, texts)) > 10
-    assert "doi" in data["source"] or "repository" in data["source"] or "Proc. R. Soc." in data["source"]
 
 
 def test_the_tip_is_fitted_to_the_odd_indentations_alone() -> None:
@@ -76,8 +61,3 @@ def test_a_committed_number_that_changes_is_disproved(monkeypatch: pytest.Monkey
     rows[0]["predicted"] += 0.1
     with pytest.raises(Disproved, match="predicted at rough"):
         cases.experiment("mica")
-
-
-def test_the_job_has_the_scene_of_the_experiment() -> None:
-    job = (ROOT / "examples/jobs/film.toml").read_text(encoding="utf-8")
-    assert job == (ROOT / "verification/experiments/scenes/film.toml").read_text(encoding="utf-8")

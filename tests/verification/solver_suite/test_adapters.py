@@ -5,7 +5,6 @@ What a code does when it is set up wrongly is shown here too, and that the suite
 
 from __future__ import annotations
 
-import importlib
 from dataclasses import replace
 from typing import Any, cast
 
@@ -18,7 +17,7 @@ from verification.benchmarks.problems import problem
 from verification.framework.case import Unavailable
 from verification.solver_suite import gaps, reference_solution, suite
 from verification.solver_suite.own import solve as own
-from verification.solver_suite.protocol import Abilities, ContactProblem, Unsupported, ask
+from verification.solver_suite.protocol import Abilities, ContactProblem, ask
 
 PUBLISHED = (tamaas.solve, contactmechanics.solve, aspher.solve)
 SPHERE = problem("smooth", 128, 1e-8)
@@ -97,21 +96,6 @@ def test_absent_code_is_unavailable() -> None:
         absent(TINY)
 
 
-@needs(tamaas.solve)
-@pytest.mark.parametrize(("M", "off"), [(9, 0.19), (15, 0.12), (33, 0.06), (16, 0.0)])
-def test_tamaas_takes_the_highest_waves_of_odd_periodic_grids_for_shorter_ones(M: int, off: float) -> None:
-    """Wave ((M - 1)/2, 1), whose displacement is that of ((M + 1)/2, 1); see `tamaas.solve.wrong`."""
-    tm: Any = importlib.import_module("tamaas")
-    model = tm.ModelFactory.createModel(tm.model_type.basic_2d, [1.0, 1.0], [M, M])
-    model.E, model.nu = 1.0, 0.0
-    k, i = (M - 1) // 2, np.arange(M)
-    model.traction[:] = pressure = np.cos(2 * np.pi * (k * i[:, None] + i) / M)
-    model.solveNeumann()
-    exact = pressure / (np.pi * np.hypot(k, 1))  # 2/q
-    found = np.linalg.norm(np.asarray(model.displacement) - exact) / np.linalg.norm(exact)
-    assert found == pytest.approx(off, abs=0.005)
-
-
 def test_slippy_is_unavailable_without_its_interpreter(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(slippy.INTERPRETER, raising=False)
     assert slippy.solve.installed is None
@@ -119,41 +103,6 @@ def test_slippy_is_unavailable_without_its_interpreter(monkeypatch: pytest.Monke
         slippy.solve(TINY)
     monkeypatch.setenv(slippy.INTERPRETER, "/no/such/python")
     assert slippy.solve.installed is None
-
-
-@pytest.mark.skipif(
-    slippy.solve.installed is None, reason=f"{slippy.INTERPRETER} names no interpreter with it"
-)
-@pytest.mark.parametrize("periodic", [False, True])
-def test_slippy_gives_what_our_solver_gives(periodic: bool) -> None:
-    posed = small("periodic" if periodic else "free")
-    pressure = np.asarray(ask(slippy.solve, posed).pressure)
-    np.testing.assert_allclose(pressure, np.asarray(own(posed).pressure), rtol=0, atol=1e-5 * pressure.max())
-
-
-def test_designs_are_one_row_each_with_their_failures() -> None:
-    def row(number: str, status: str, error: float | None) -> dict[str, Any]:
-        name = f"solver/design-plain-{number}"
-        same = {"tolerance": 1.01, "seconds": 0.5, "residual": error, "note": "why"}
-        return {"id": name, "status": status, "error": error, **same}
-
-    single = {"id": "solver/pins", "status": "pass"}
-    found = table.summarised(
-        [single, row("01", "pass", 0.5), row("02", "fail", 7.0), row("03", "unavailable", None)]
-    )
-    assert found[0] == single
-    assert found[1]["id"] == "solver/design-plain"
-    assert (found[1]["status"], found[1]["error"], found[1]["seconds"]) == ("fail", 7.0, 1.5)
-    assert found[1]["note"] == "fail: 02"
-    assert table.summarised([row("01", "pass", 0.5), row("02", "unavailable", None)])[0]["status"] == "pass"
-
-
-def test_present_code_keeps_to_its_abilities() -> None:
-    """NumPy is always there: a distribution that is installed."""
-    able = Abilities(periodic=False)
-    code = PublishedCode("numpy", "none", "", able, lambda posed: PublishedAnswer(posed.gap, True))
-    with pytest.raises(Unsupported, match="numpy does not offer: periodic"):
-        code(replace(TINY, periodic=True))
 
 
 @pytest.mark.parametrize("name", SMALL)
@@ -165,12 +114,6 @@ def test_closure_is_a_bound(name: str) -> None:
     if mean_displacement > 0:  # one periodic element under load stores no energy in the reference's symbols
         rounding = 1e-12  # an exact equality where contact is full
         assert closure(posed) / (0.5 * mean_displacement) <= posed.tolerance * (1 + rounding)
-
-
-@pytest.mark.parametrize("code", [pytest.param(p, marks=needs(p), id=p.extra) for p in PUBLISHED[:2]])
-def test_codes_refuse_an_approach_with_a_hardness(code: PublishedCode) -> None:
-    with pytest.raises(Unsupported, match="with a hardness"):
-        code(small("periodic, approach", hardness=1e8))
 
 
 @needs(tamaas.solve)
@@ -193,18 +136,6 @@ def test_negative_control_tamaas_without_its_second_step_is_periodic() -> None:
         np.asarray(fallen_in.pressure), np.asarray(periodic.pressure), rtol=0, atol=171e6 * 1e-6
     )
     assert fails(negative_controls.registered_only, "solver/hertz-peak", "solver/surroundings")
-
-
-@needs(contactmechanics.solve)
-def test_negative_control_contactmechanics_without_mean_stiffness_stops_at_once() -> None:
-    """A periodic half-space with ``stiffness_q0 = 0`` under a load: uniform pressure, and success."""
-    fallen_in = negative_controls.no_mean_stiffness(small("periodic"))
-    pressure = np.asarray(fallen_in.pressure)
-    assert fallen_in.converged is True
-    assert np.ptp(pressure) < 1e-12 * pressure.max()
-    assert fails(
-        negative_controls.no_mean_stiffness, "solver/westergaard-pressure", "solver/rough-plane"
-    )
 
 
 def fails(code: PublishedCode, *cases: str) -> bool:

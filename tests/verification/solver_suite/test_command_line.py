@@ -46,10 +46,8 @@ solve.abilities = Abilities(periodic=False, load=False, largest=12, precision=1e
 
 IMPORTS = {
     "rival_unwritten": "def solve(problem:",
-    "rival_raising": "raise RuntimeError('no licence\\nfound')",
     "rival_leaving": "import sys; sys.exit('bye')",
     "rival_dying": "import os; os._exit(7)",
-    "rival_crashing": "import os; os.abort()",
 }
 
 
@@ -94,9 +92,7 @@ STATED = Abilities(periodic=False, load=False, largest=12, precision=1e-7)
     ("options", "expected"),
     [
         ([], STATED),
-        (["--largest", "8"], replace(STATED, largest=8)),
         (["--precision", "1e-6"], replace(STATED, precision=1e-6)),
-        (["--able", "aperiodic,load"], replace(STATED, load=True, approach=False)),
         (
             ["--able", "aperiodic,load", "--largest", "9"],
             replace(STATED, load=True, approach=False, largest=9),
@@ -113,17 +109,6 @@ def test_an_option_replaces_only_its_own_part_of_a_solvers_abilities(
     assert abilities_of(source()) == expected
 
 
-def test_abilities_of_a_function_outlast_an_option(rival: Path, capfd: Capture) -> None:
-    (rival / "able_solver.py").write_text(ABLE)
-    only = ["--only", "solver/one-element", "--only", "solver/westergaard-load"]
-    assert main(["verify", "--solver", "able_solver:solve", "--largest", "64", *only, "--json", "-"]) == 0
-    document = json.loads(capfd.readouterr().out)
-    assert document["solver"]["not_applicable"] == {
-        "solver/westergaard-load": "the solver does not offer: periodic"
-    }
-    assert document["solver"]["abilities"] == {"largest": 64}
-
-
 def test_the_command_line_names_what_was_not_run(capfd: Capture) -> None:
     only = ["--only", "solver/one-element", "--only", "solver/westergaard-load"]
     status = main(["verify", "--exec", "false", "--able", "aperiodic,approach", *only])
@@ -133,9 +118,6 @@ def test_the_command_line_names_what_was_not_run(capfd: Capture) -> None:
     assert "not offer: periodic: westergaard-load" in printed
     assert "0 pass, 0 fail, 1 error, 1 unavailable" in printed
     assert "exit status 1: nothing said" in printed
-    assert (
-        main(["verify", "--exec", "true", "--able", "periodic,load", "--only", "solver/one-element"]) == 1
-    )
 
 
 def test_a_name_that_is_no_utf_8_can_be_written(tmp_path: Path, capfd: Capture) -> None:
@@ -145,9 +127,7 @@ def test_a_name_that_is_no_utf_8_can_be_written(tmp_path: Path, capfd: Capture) 
     assert "false caf?: 0 pass" in capfd.readouterr().out
 
 
-def test_the_whole_suite_names_the_faults_that_it_did_not_look_for(
-    capfd: Capture, tmp_path: Path
-) -> None:
+def test_the_whole_suite_names_the_faults_that_it_did_not_look_for(capfd: Capture, tmp_path: Path) -> None:
     own_name = "verification.solver_suite.own:solve"
     able = ["--able", "aperiodic,load", "--largest", "16"]
     assert main(["verify", "--solver", own_name, *able, "--json", str(tmp_path / "a.json")]) == 0
@@ -160,11 +140,14 @@ def test_the_whole_suite_names_the_faults_that_it_did_not_look_for(
     assert unseen_faults(check.case(own.solve).result(Status.PASS, "", 0.0) for check in suite()) == []
 
 
+CASES = {check.id: check.case(own.solve) for check in suite()}
+
+
 @pytest.mark.parametrize("fault", FAULTY, ids=str)
 def test_a_fault_that_fails_where_it_is_named_is_listed_first(fault: Fault) -> None:
     """Or second, behind another one that the same cases name."""
     statuses = {check: Status.FAIL if fault in check.catches else Status.PASS for check in suite()}
-    results = [check.case(own.solve).result(status, "", 0.0) for check, status in statuses.items()]
+    results = [CASES[check.id].result(status, "", 0.0) for check, status in statuses.items()]
     named = sum(status is Status.FAIL for status in statuses.values())
     assert f"{fault} ({named} of {named})" in likely_faults(results)[:2]
     assert likely_faults(result for result in results if result.status == "pass") == []
@@ -176,32 +159,19 @@ def test_a_fault_that_fails_where_it_is_named_is_listed_first(fault: Fault) -> N
         (["--solver", "no_such_module:solve"], "no_such_module"),
         (["--solver", "rival_solver"], "package.module:function"),
         (["--solver", "rival_solver:number"], "package.module:function"),
-        (["--solver", "rival_solver:absent"], "absent"),
-        (["--solver", "rival_unwritten:solve"], "'rival_unwritten:solve': expected package.module:function"),
         (["--solver", "rival_unwritten:solve"], "SyntaxError: '(' was never closed"),
-        (["--solver", "rival_raising:solve"], "RuntimeError: no licence found"),
         (["--solver", "rival_leaving:solve"], "SystemExit: bye"),
-        (["--solver", "rival_dying:solve"], "'rival_dying:solve': expected a solver whose import ends well"),
         (["--solver", "rival_dying:solve"], "the solver's process died (exit status 7)"),
-        (["--solver", "rival_crashing:solve"], "the solver's process died (killed by SIGABRT)"),
         (["--solver", "rival_solver:solve", "--able", "magic"], "magic"),
         (["--solver", "rival_solver:solve", "--largest", "0"], "largest"),
         (["--solver", "rival_solver:solve", "--precision", "0.1"], "precision"),
         (["--solver", "rival_solver:solve", "--only", "hertz/*"], "no case of the suite matches"),
-        (["--solver", "rival_solver:solve", "--only", "!*"], "!* leave no case of the suite"),
         (["--exec", "solve 'it"], '--exec = "solve \'it": expected a command (No closing quotation)'),
-        (["--exec", ""], "--exec = '': expected a command\n"),
         (["--exec", "./missing --fast"], "--exec = './missing --fast': expected a command whose first word"),
-        (["--exec", "no-such-program"], "'no-such-program': expected a command whose first word"),
         (["--exec", "./rival_solver.py"], "is a program that can be run"),
         (["--exec", "."], "is a program that can be run"),
         (["--exec", "true", "--timeout", "0"], "--timeout = 0.0: expected seconds for one problem, above 0"),
-        (["--exec", "true", "--timeout", "-1"], ": --timeout = -1.0"),
-        *(
-            ([*solver, "--timeout", late], "at most 86400")
-            for solver in (["--exec", "true"], ["--solver", "rival_solver:solve"])
-            for late in ("inf", "nan", "1e9", "400000")
-        ),
+        (["--exec", "true", "--timeout", "nan"], "at most 86400"),
         (["--exec", "true", "--solver", "rival_solver:solve"], "not allowed with"),
         (["--able", "load"], "nothing without --solver or --exec"),
     ],
@@ -221,8 +191,6 @@ def test_bad_usage_is_refused_in_one_line(
 def test_the_suite_and_the_self_test_can_be_listed(capfd: Capture) -> None:
     assert main(["verify", "--solver", "not.imported:here", "--list"]) == 0
     assert "solver/trailing-shift" in capfd.readouterr().out
-    assert main(["verify", "--solver", "not.imported:here", "--only", "!*/design-*", "--list"]) == 0
-    assert capfd.readouterr().out.count("solver/") == sum("/design-" not in c.id for c in suite())
     assert main(["verify", "--self-test", "--list"]) == 0
     listed = capfd.readouterr().out.splitlines()
     assert len([line for line in listed if "solver_suite/catches-" in line]) == len(FAULTY)

@@ -34,7 +34,6 @@ def judged(fails: Callable[[dict[str, Any]], bool]) -> list[Result]:
         ({"borders"}, lambda row: row["borders"] == "periodic"),
         ({"borders", "parity"}, lambda row: row["borders"] == "periodic" and row["elements"] % 2 == 0),
         ({"sector"}, lambda row: bool(row.get("beta")) and row["sector"] == 6),
-        ({"changed"}, lambda row: row.get("changed") == "edge"),
     ],
 )
 def test_the_dimensions_of_a_fault_come_first(

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-import refimpl as rf
 from refimpl.grid import Array
 from verification.solver_suite import numbers, own, reference_solution
 from verification.solver_suite.design import posed, rows
@@ -139,11 +137,3 @@ def test_a_wrong_number_is_reported_with_its_unit() -> None:
     """Three elements of 1 um^2, and half of one."""
     answer = Answer(np.where(np.sort(HEIGHTS, axis=None)[2] >= HEIGHTS, 1.0, 0.0), True, contact_area=1e-12)
     assert numbers.wrong(FREE, answer) == ["contact area 1e-12 m^2: its pressures give 3e-12 +- 5e-13 m^2"]
-
-
-def test_that_nothing_touches_is_success_at_an_approach_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    ended = SimpleNamespace(pressure=HEIGHTS, approach=2.0, contact_area=3.0, status=rf.Status.NO_CONTACT)
-    monkeypatch.setattr(own, "solved", lambda *_: ended)
-    at_approach, under_load = own.solve(KINDS["at an approach"]), own.solve(FREE)
-    assert (at_approach.converged, under_load.converged) == (True, False)
-    assert (at_approach.approach, at_approach.contact_area) == (2.0, 3.0)

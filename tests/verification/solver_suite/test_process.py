@@ -16,11 +16,10 @@ import numpy as np
 import psutil
 import pytest
 
-from refimpl.errors import InputError
 from tests.verification.cli.children import forked, started
 from verification.cli import main
 from verification.cli.suite_run import unwinding
-from verification.framework.case import Reported, Result
+from verification.framework.case import Result
 from verification.solver_suite import identity, isolated, process
 from verification.solver_suite.isolated import Named
 from verification.solver_suite.protocol import ContactProblem
@@ -47,7 +46,7 @@ def reopens(problem):  # a file in the place of every descriptor, from the first
     return 0 * problem.gap
 """
 SOLVERS = r'''
-import os, shutil, subprocess, sys, time
+import os, subprocess, sys, time
 from pathlib import Path
 import numpy as np
 from verification.solver_suite import own
@@ -70,18 +69,6 @@ def folder():
     return Path(os.environ["TMPDIR"])
 
 @on_one_element
-def writes(problem):
-    """Into every descriptor it has, but for the three that people read, and every file of its folder."""
-    for number in range(3, 64):
-        try:
-            os.set_blocking(number, False)
-            os.write(number, b"\xff" * 40)
-        except OSError:
-            pass
-    for file in [*folder().iterdir(), folder() / "1"]:
-        file.write_bytes(b"\xff" * 40)
-
-@on_one_element
 def nests(problem):
     (folder() / "1").write_text("[" * 60000)
 
@@ -99,18 +86,10 @@ def pipes(problem):
     time.sleep(600)
 
 @on_one_element
-def removes(problem):
-    shutil.rmtree(folder())
-
-@on_one_element
 def forges(problem):
     (folder() / "1.part").write_bytes(b'{"kind": "answer"}\n' + np.full(problem.shape, np.nan).tobytes())
     os.replace(folder() / "1.part", folder() / "1")
     time.sleep(600)
-
-def vanishes(problem):
-    os.remove(__file__)
-    os._exit(3)
 
 def twice(problem):
     return 2 * np.asarray(own.solve(problem).pressure)
@@ -183,29 +162,32 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def judged(name: str, timeout: float = 60.0) -> list[Result]:
-    return isolated.run(Named(f"hostile:{name}").solver, CASES, timeout=timeout)
+def judged(name: str, timeout: float = 60.0, cases: list[str] = CASES) -> list[Result]:
+    return isolated.run(Named(f"hostile:{name}").solver, cases, timeout=timeout)
 
 
 @pytest.mark.parametrize(
     ("name", "note"),
     [
         ("exits", "the solver's process died (exit status 0)"),
-        ("hangs", "no answer within 9.5 s"),
-        pytest.param("writes", OTHER, marks=pytest.mark.nightly),
         ("nests", OTHER),
         ("floods", OTHER),
         ("pipes", OTHER),
-        pytest.param("removes", "the solver's process died (", marks=pytest.mark.nightly),
     ],
 )
-def test_a_solver_without_an_answer_is_an_error_of_its_case_and_the_rest_still_runs(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, name: str, note: str
+def test_a_solver_without_an_answer_is_an_error_of_its_case(folder: Path, name: str, note: str) -> None:
+    (found,) = judged(name, cases=CASES[:1])
+    assert found.status == "error"
+    assert found.note.startswith(note)
+
+
+def test_after_a_problem_without_an_answer_the_rest_still_runs(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(isolated, "GRACE", 9.0)
-    first, second = judged(name, timeout=0.5)
+    first, second = judged("hangs", timeout=0.5)
     assert (first.status, second.status) == ("error", "pass")
-    assert first.note.startswith(note)
+    assert first.note.startswith("no answer within 9.5 s")
 
 
 PROBLEM = ContactProblem(np.zeros((2, 2)), spacing=1e-6, reduced_modulus=1e9, load=4e-6)
@@ -230,17 +212,6 @@ def test_the_folder_of_a_solver_does_not_grow(temporary: Path) -> None:
     assert not list(temporary.iterdir())
 
 
-def test_a_solver_that_cannot_be_started_again_says_so_each_time(temporary: Path) -> None:
-    remote = isolated.Remote(Named("hostile:vanishes").solver, 60.0, "vanishes")
-    with pytest.raises(Reported, match="exit status 3"):
-        remote(PROBLEM)
-    for _ in range(2):
-        with pytest.raises(InputError, match="No module named 'hostile'"):
-            remote(PROBLEM)
-    remote.close()
-    assert not list(temporary.iterdir())
-
-
 def test_a_process_that_cannot_be_started_leaves_no_folder(
     temporary: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -250,20 +221,13 @@ def test_a_process_that_cannot_be_started_leaves_no_folder(
     assert not list(temporary.iterdir())
 
 
-def test_a_process_that_fails_on_its_own_removes_its_folder(tmp_path: Path) -> None:
-    (tmp_path / "own").mkdir()
-    child = process.start(len, tmp_path / "own", "nobody's mark")  # type: ignore[arg-type]  # takes no solver
-    assert child.wait(60) == 1
-    assert not list(tmp_path.iterdir())
-
-
 def test_a_forged_reply_is_judged_like_any_other(folder: Path) -> None:
-    (result,) = isolated.run(Named("hostile:forges").solver, CASES[:1], timeout=60.0)
+    (result,) = judged("forges", cases=CASES[:1])
     assert (result.status, result.error) == ("error", None)
     assert "pressures are not finite" in result.note
 
 
-@pytest.mark.parametrize(("name", "status"), [("twice", "fail"), ("patches", "fail"), ("forks", "pass")])
+@pytest.mark.parametrize(("name", "status"), [("patches", "fail"), ("forks", "pass")])
 def test_a_solver_that_patches_the_judge_or_forks_is_judged_once_a_case(
     folder: Path, name: str, status: str
 ) -> None:
@@ -306,7 +270,7 @@ def test_somebody_elses_child_is_left_alone(folder: Path) -> None:
         time.sleep(600)
         os._exit(0)
     try:
-        assert {r.status for r in judged("twice")} == {"fail"}
+        assert {r.status for r in judged("twice", cases=CASES[:1])} == {"fail"}
         assert running(other)
     finally:
         os.kill(other, signal.SIGKILL)
@@ -341,16 +305,10 @@ def test_an_interrupted_run_shows_and_writes_what_is_judged_so_far(
 @pytest.mark.parametrize(
     ("solver", "how"),
     [
-        *(
-            pytest.param(["--exec", SLEEPER], how, marks=pytest.mark.nightly)
-            for how in (signal.SIGINT, signal.SIGTERM)
-        ),
+        pytest.param(["--exec", SLEEPER], signal.SIGTERM, marks=pytest.mark.nightly),
         (["--exec", SLEEPER], signal.SIGKILL),
         (["--solver", "sleeper:reopens", "--only", "solver/pins"], signal.SIGKILL),
-        *(
-            pytest.param(["--solver", "sleeper:solve"], how, marks=pytest.mark.nightly)
-            for how in (signal.SIGHUP, signal.SIGKILL)
-        ),
+        pytest.param(["--solver", "sleeper:solve"], signal.SIGHUP, marks=pytest.mark.nightly),
     ],
 )
 def test_a_run_that_is_ended_takes_the_solver_with_it(

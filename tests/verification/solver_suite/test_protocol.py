@@ -36,15 +36,12 @@ FINE = np.ones((2, 2))
 @pytest.mark.parametrize(
     ("field", "changed"),
     [
-        ("gap", {"gap": np.zeros(6)}),
         ("spacing_y", {"spacing_y": -1e-6}),
         ("gap", {"gap": np.array([[0.0, np.nan], [0.0, 0.0]])}),
         ("gap", {"gap": GAP + 1e-9}),
-        ("spacing", {"spacing": 0.0}),
         ("reduced_modulus", {"reduced_modulus": -1e9}),
         ("load", {"load": None}),
         ("load", {"approach": 1e-7}),
-        ("load", {"load": 0.0}),
         ("approach", {"load": None, "approach": np.inf}),
         ("tolerance", {"tolerance": 1.0}),
     ],
@@ -54,14 +51,6 @@ def test_a_problem_is_checked(field: str, changed: dict[str, object]) -> None:
     with pytest.raises(InputError) as refused:
         ContactProblem(**given)  # type: ignore[arg-type]  # what no type checker saw is the point
     assert refused.value.field == field
-
-
-@pytest.mark.parametrize(
-    "changed", [{"tau": -1.0}, {"beta": -0.1}, {"shear_compliance": np.nan}, {"sliding_direction": np.inf}]
-)
-def test_a_coupling_is_checked(changed: dict[str, float]) -> None:
-    with pytest.raises(InputError, match=next(iter(changed))):
-        Coupling(**({"tau": 0.0, "beta": 0.0, "shear_compliance": 0.0} | changed))
 
 
 def test_an_approach_counts_from_the_mean_planes_only_where_it_is_periodic() -> None:
@@ -74,22 +63,15 @@ def test_an_approach_counts_from_the_mean_planes_only_where_it_is_periodic() -> 
 @pytest.mark.parametrize(
     ("answer", "said"),
     [
-        (np.ones(4), "shape"),
         (np.ones((2, 3)), "shape"),
         (np.array([[1.0, np.nan], [1.0, 1.0]]), "1 pressures are not finite"),
-        (np.array([[1.0, -np.inf], [1.0, 1.0]]), "finite"),
         (1j * FINE, "returned an array of complex128: .* array of real numbers"),
-        (FINE > 0, "returned an array of bool"),
         (np.ma.masked_array(FINE, mask=FINE > 0), "4 pressures are masked"),
-        (Answer(np.ma.masked_less(GAP, 1e-7), True), "1 pressures are masked"),
         (None, "returned None"),
         ([[1.0, 1.0], [1.0, 1.0]], "returned a list"),
         ((FINE, True), r"returned a tuple: .* Answer\(pressure, converged\)"),
-        (Answer(FINE, False), "the solver did not converge by its own report"),
         (Answer(FINE, np.False_), "the solver did not converge by its own report"),
         (Answer(FINE, 1), "converged = 1: expected true or false"),
-        (Answer(FINE, np.array([True])), "converged = array.*: expected true or false"),
-        (Answer(FINE, "yes"), "converged = 'yes': expected true or false"),
         (Answer(None, True), "returned an array of object"),
         (Answer([[1.0], [1.0, 1.0]], True), "inhomogeneous"),
     ],
@@ -229,23 +211,17 @@ def test_an_answer_may_be_an_archive(tmp_path: Path) -> None:
     ("script", "said"),
     [
         ("exit 3", "exit status 3: nothing said"),
-        ("echo out of memory >&2; exit 1", "exit status 1: out of memory"),
         ("rm -r $0; echo gone >&2; exit 1", "exit status 1: gone"),
         ("kill -SEGV $$", "killed by SIGSEGV: nothing said"),
         ("true", "neither pressure.csv nor answer.npz"),
         (": > $0/pressure.csv", "unreadable"),
         ("mkfifo $0/pressure.csv", "pressure.csv is no regular file"),
         ("cp $0/gap.csv $0/pressure.csv; mkfifo $0/answer.json", "answer.json is no regular file"),
-        ("echo 1,2,3,4 > $0/pressure.csv", "shape"),
-        ("printf '1,2\\n3\\n' > $0/pressure.csv", "unequal length"),
-        ("sed s/0.5/nan/ $0/gap.csv > $0/pressure.csv", "not finite"),
-        ("sed s/0.5/oops/ $0/gap.csv > $0/pressure.csv", "unreadable"),
         ("cp $0/gap.csv $0/pressure.csv; cp $0/problem.npz $0/answer.npz", "both"),
         ("printf '1,2\\n\\n3,4,\\n' > $0/pressure.csv", "line 3, number 3: '' is no number"),
         ("printf '1,2\\n0.0D+00,4\\n' > $0/pressure.csv", "line 2, number 1: '0.0D+00' is no number"),
-        ("printf '1,2\\n1_0,4\\n' > $0/pressure.csv", "line 2, number 1: '1_0' is no number"),
         (
-            "cp $0/gap.csv $0/pressure.csv; echo '{\"approach\": 1, \"approach\": 2}' > $0/answer.json",
+            'cp $0/gap.csv $0/pressure.csv; echo \'{"approach": 1, "approach": 2}\' > $0/answer.json',
             "the key 'approach' is there twice",
         ),
         ("printf '1,2\\n3,4\\n5\\n' > $0/pressure.csv", "line 3 has 1 numbers, those before have 2"),
@@ -253,11 +229,6 @@ def test_an_answer_may_be_an_archive(tmp_path: Path) -> None:
             "cp $0/gap.csv $0/pressure.csv; echo '{\"converged\": false}' > $0/answer.json",
             "did not converge by its own report",
         ),
-        (
-            "cp $0/gap.csv $0/pressure.csv; echo '{\"converged\": 1}' > $0/answer.json",
-            "converged = 1: expected true or false",
-        ),
-        ("cp $0/gap.csv $0/pressure.csv; echo '{}' > $0/answer.json", "unreadable"),
         ("cp $0/gap.csv $0/pressure.csv; echo '[1]' > $0/answer.json", "unreadable"),
         ("sleep 30 & sleep 30", "no answer within 0.2 s"),
     ],

@@ -86,16 +86,3 @@ def recipe(folder: Path, factor: str) -> str:
 def test_the_recipe_passes_a_right_code(folder: Path) -> None:
     printed = recipe(folder, "1.0")
     assert "2 passed" in printed, printed
-
-
-@pytest.mark.nightly
-def test_the_recipe_fails_a_modulus_that_is_off(folder: Path) -> None:
-    """By 1e-5, ten times the recipe's tolerance: that is what it says of both problems."""
-    printed = recipe(folder, "1.00001")
-    assert "2 failed" in printed, printed
-    failures = re.findall(r"^E +AssertionError: assert (.*)$", printed, flags=re.M)
-    for norm, element, allowed in (map(float, re.findall(r"float64\(([^)]+)\)", line)) for line in failures):
-        assert norm * element**0.5 == pytest.approx(10 * allowed, rel=1e-3)
-    for problem in ("pins", "hertz-load"):
-        assert f"FAILED test_my_code.py::test_pressures[{problem}] - AssertionError" in printed
-    assert len(failures) == 2

@@ -24,15 +24,14 @@ from verification.solver_suite.reference.certified import (
     CONTACT,
     SEPARATED,
     Certified,
-    NotCertified,
     certified,
 )
 from verification.solver_suite.reference.files import SUMS, checksums
 from verification.solver_suite.reference.periodic_bound import periodic_bound
-from verification.solver_suite.reference.posed import _key, problems
+from verification.solver_suite.reference.posed import _key
 
 E = 2e9
-SMALL = ("pins", "out-of-reach*", "sheared-pins", "capped-pins*", "periodic-elimination")
+SMALL = ("pins", "out-of-reach*", "sheared-pins", "capped-pins*")
 ONLY = [word for name in SMALL for word in ("--only", f"solver/{name}")]
 
 
@@ -53,7 +52,7 @@ def within(found: Certified, exact: Array) -> None:
 
 
 @pytest.mark.parametrize("by_load", [True, False])
-@pytest.mark.parametrize("array", [FREE[0], FREE[2], PERIODIC[0], PERIODIC[2]])
+@pytest.mark.parametrize("array", [FREE[2], PERIODIC[2]])
 def test_pressures_that_were_chosen_lie_within_the_bounds(array: PinArray, by_load: bool) -> None:
     found = certified(problem_of(array, by_load=by_load))
     # the pins' gaps are rounded (1e-16 of 0.5 m), which moves pressures by 1e-12 of the peak
@@ -68,14 +67,14 @@ WAVY = ContactProblem(_lowest(0.01 * waves(16, 5, shortest=4)), 1 / 16, E, appro
 BUMP = ContactProblem(_lowest(rough_bump(8, 1)), 1 / 8, E, approach=0.01)
 
 
-@pytest.mark.parametrize("depth", [-0.016, -0.006, -0.0005])
+@pytest.mark.parametrize("depth", [-0.016, -0.0005])
 def test_at_a_periodic_approach_elimination_lies_within_the_bounds(depth: float) -> None:
     found = certified(replace(WAVY, approach=depth))
     within(found, reference_solution.eliminated(found.problem))
     assert 0 < found.bounds.pressure < 1e-8 * found.pressure.max()
 
 
-@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-8])
 def test_a_loose_solution_lies_within_its_periodic_bounds(tolerance: float) -> None:
     """Its error is large, so that a bound without a margin would show."""
     loose, exact = own.solved(WAVY, tolerance), reference_solution.eliminated(WAVY)
@@ -101,31 +100,11 @@ def test_where_planes_overlap_or_are_free_no_periodic_bound_is_claimed() -> None
     assert periodic_bound(BUMP, own.solved(BUMP, 1e-10)) is None
 
 
-def test_a_bound_that_is_of_no_use_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("verification.solver_suite.reference.certified.USABLE", 1e-20)
-    with pytest.raises(NotCertified, match="pressures are known to"):
-        certified(replace(BUMP, approach=None, load=1e5))
-
-
 def test_without_contact_pressures_are_exactly_zero() -> None:
     found = certified(replace(BUMP, approach=-0.05))
     assert not found.pressure.any()
     assert found.bounds.pressure == 0
     assert (found.contact == SEPARATED).all()
-
-
-def test_uniform_periodic_pressures_have_no_residual_and_their_bounds() -> None:
-    found = certified(ContactProblem(np.zeros((6, 6)), 0.5, E, load=9e3, periodic=True))
-    assert found.residual is None
-    assert float(np.abs(found.pressure - 1e3).max()) <= found.bounds.pressure + 1e-12
-    assert (found.contact == CONTACT).all()
-
-
-def test_a_problem_is_posed_once_and_grids_are_small() -> None:
-    names = [named.name for named in problems(["solver/wide-pins", "solver/hertz-*"])]
-    assert len(names) == len(set(names))
-    assert "hertz-load" in names
-    assert not any(name.startswith("wide-pins") for name in names)  # 160 elements a side
 
 
 def test_a_problem_that_differs_in_one_number_is_another_one() -> None:
@@ -188,17 +167,6 @@ def test_arrays_have_the_shapes_of_the_index_and_solve_the_problems(folder: Path
             )
 
 
-def test_the_table_repeats_the_index(folder: Path) -> None:
-    head, *rows = (folder / "index.csv").read_text().splitlines()
-    assert tuple(head.split(",")) == files.COLUMNS
-    for row, entry in zip(rows, agreement.index_of(folder)["problems"], strict=True):
-        cells = dict(zip(files.COLUMNS, row.split(","), strict=True))
-        assert cells["name"] == entry["name"]
-        assert float(cells["lx"]) == entry["problem"]["lengths"][0]
-        assert float(cells["value"]) == entry["problem"]["value"]
-        assert float(cells["bound_load"]) == entry["answer"]["bounds"]["load"]
-
-
 def test_an_export_agrees_with_itself(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert agreement.main([str(folder)]) == 0
     assert "every problem agrees" in capsys.readouterr().out
@@ -222,13 +190,6 @@ def test_a_changed_file_is_found(copy: Path) -> None:
     assert found == [f"data/pins.pressure.f64: its checksum is not the one in {SUMS}"]
 
 
-def test_a_file_that_has_no_checksum_is_found_and_one_that_is_missing(copy: Path) -> None:
-    first, *rest = (copy / SUMS).read_text().splitlines(keepends=True)
-    (copy / SUMS).write_text(f"{'0' * 64}  data/lost.f64\n" + "".join(rest))
-    found = {line.partition(":")[0] for line in agreement.disagreements(copy, ["pins"])}
-    assert found == {"data/lost.f64", first.split()[1]}
-
-
 def test_pressures_beyond_the_bounds_are_found_whatever_the_checksums(copy: Path) -> None:
     multiply(copy, 1 + 1e-7)
     (copy / SUMS).write_text("".join(f"{digest}  {name}\n" for name, digest in checksums(copy).items()))
@@ -240,9 +201,7 @@ def test_a_folder_that_holds_something_is_refused(tmp_path: Path, capsys: pytest
     (tmp_path / "mine.txt").write_text("keep")
     only = ["--only", "solver/pins"]
     assert main(["verify", "--export", str(tmp_path), *only]) == 2
-    assert main(["verify", "--export", str(tmp_path / "no" / "such"), *only]) == 2
     assert main(["verify", "--export", str(tmp_path / "x"), "--self-test"]) == 2
-    assert main(["verify", "--export", str(tmp_path / "x"), "--only", "solver/no-such"]) == 2
     assert main(["verify", "--export", str(tmp_path / "x"), "--only", "solver/wide-pins"]) == 2
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
     assert "a new or an empty directory" in capsys.readouterr().err

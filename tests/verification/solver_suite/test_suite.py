@@ -35,28 +35,6 @@ def naming(fault: Fault) -> list[str]:
     return [check.id for check in suite() if fault in check.catches]
 
 
-@pytest.mark.parametrize("name", ["periodic-elimination", "periodic-approach"])
-def test_a_periodic_mean_that_is_off_is_an_error(name: str) -> None:
-    """It stores no energy, so nothing but the mean itself shows it."""
-
-    def lifted(asked: ContactProblem) -> np.ndarray:
-        pressure = np.array(own.solve(asked).pressure)
-        return pressure + 1e-3 * pressure.mean() if asked.periodic else pressure
-
-    (result,) = run(Limited(lifted, own.solve.abilities), [f"solver/{name}"])
-    assert result.error == pytest.approx(1e-6 / 1e-8, rel=1e-3)
-    assert result.status == "fail"
-
-
-def test_the_dense_reference_passes_what_is_small_enough() -> None:
-    names = ["pins", "wide-pins", "sheared-pins*", "periodic-sheared-*", "hertz-peak", "sliding-residual"]
-    results = {r.id.partition("/")[2]: r for r in run(own.dense, [f"solver/{name}" for name in names])}
-    too_large = {name for name, r in results.items() if r.status != "pass"}
-    assert len(results) == 8
-    assert too_large == {"hertz-peak", "wide-pins"}
-    assert results["hertz-peak"].note == "the solver does not offer: 32 elements along one axis"
-
-
 def test_every_fault_is_named_and_described() -> None:
     for check in suite():
         assert all(fault in check.case(own.solve).claim for fault in check.catches)
@@ -64,10 +42,17 @@ def test_every_fault_is_named_and_described() -> None:
     assert [fault for fault in Fault if not naming(fault)] == []
 
 
+SOME = {check.id for check in suite() if not re.search(r"/design-(?!tiny).*[1-9]$", check.id)}
+"""All cases, of the designs the tiny problems and every tenth: they are judged by one function."""
+
+
+@pytest.mark.parametrize("whole", [False, pytest.param(True, marks=pytest.mark.nightly)])
 @pytest.mark.parametrize("fault", FAULTY, ids=str)
-def test_a_faulty_solver_fails_wherever_its_fault_is_named(fault: Fault) -> None:
-    results = run(FAULTY[fault](), naming(fault))
-    assert {r.id: r.status for r in results} == dict.fromkeys(naming(fault), "fail")
+def test_a_faulty_solver_fails_wherever_its_fault_is_named(fault: Fault, whole: bool) -> None:
+    """In `make test` every fourth of the cases that name it."""
+    named = naming(fault)[:: 1 if whole else 4]
+    results = run(FAULTY[fault](), named)
+    assert {r.id: r.status for r in results} == dict.fromkeys(named, "fail")
     assert all(r.unit for r in results if r.value is not None)
 
 
@@ -148,16 +133,9 @@ SYMMETRIC |= {"sliding-reversed", "identical-materials"}
 NONSENSE = {
     "huge": lambda p: np.full_like(p.gap, 1e308),
     "infinite both ways": lambda p: np.where(np.indices(p.gap.shape).sum(axis=0) % 2, 1e308, -1e308),
-    "large": lambda p: np.full_like(p.gap, 1e58),
-    "tiny": lambda p: np.full_like(p.gap, 5e-324),
     "nothing": lambda p: np.zeros_like(p.gap),
     "cancelling": lambda p: np.where(np.indices(p.gap.shape).sum(axis=0) % 2, 1.0, -1.0),
-    "pulling": lambda p: -np.ones_like(p.gap),
 }
-
-
-SOME = [check.id for check in suite() if not re.search(r"/design-(?!tiny).*[1-9]$", check.id)]
-"""All cases, of the designs the tiny problems and every tenth: they are judged by one function."""
 
 
 IN_CI = ("infinite both ways", "nothing")  # one of those that overflow, one of those that vanish
@@ -174,14 +152,14 @@ def test_nonsense_passes_nothing_but_symmetries_and_warns_of_nothing(answer: Sol
     """Energies and sums overflow or vanish: infinity over infinity is no proof that two answers agree."""
     with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
-        results = run(Limited(answer, own.solve.abilities), SOME)
+        results = run(Limited(answer, own.solve.abilities), sorted(SOME))
     passed = {r.id.partition("/")[2] for r in results if r.status == "pass"}
     nothing = answer is NONSENSE["nothing"]  # no load is carried: that nothing pulls cannot be judged
     assert passed <= SYMMETRIC - ({"no-tension"} if nothing else set())
     assert [str(w.message) for w in warned] == []
 
 
-@pytest.mark.parametrize("light", [0.001, 0.01, 0.05])
+@pytest.mark.parametrize("light", [0.001, 0.05])
 def test_a_load_that_is_missed_alone_is_seen(light: float) -> None:
     """One of three loads is borne to 1e-4 too much: 1e4 times the claim of 1e-8."""
 
@@ -193,3 +171,22 @@ def test_a_load_that_is_missed_alone_is_seen(light: float) -> None:
     (result,) = run(Faulty(solver), ["solver/load-balance"])
     assert result.status == "fail"
     assert result.value == pytest.approx(1e4, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["periodic-approach", "periodic-sheared-pins-approach"])
+def test_an_honest_answer_at_its_claim_passes_with_its_mean_counted(name: str) -> None:
+    """Errors of the contact's level, the worst there are, as large as the claim lets them be."""
+
+    def lax(asked: ContactProblem) -> Array:
+        exact = np.asarray(own.solve(replace(asked, tolerance=1e-12)).pressure)
+        low, high = 1e-14, 1.0
+        for _ in range(50):
+            share = float(np.sqrt(low * high))
+            residual = reference_solution.residual(asked, exact + share * exact.mean() * (exact > 0)).worst
+            low, high = (share, high) if residual <= asked.tolerance else (low, share)
+        return np.asarray(exact + low * exact.mean() * (exact > 0))
+
+    for precision in (1e-8, 1e-6):
+        (result,) = run(Limited(lax, replace(own.solve.abilities, precision=precision)), [f"solver/{name}"])
+        assert result.error is not None
+        assert 0 < result.error < 0.01  # of 2 claims: an error's energy is of second order

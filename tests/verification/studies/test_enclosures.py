@@ -32,23 +32,15 @@ def test_twelve_scenes_are_stored_with_positive_margins_and_provenance() -> None
         assert content["provenance"]["versions"]["python-flint"]
 
 
-def test_heights_are_exact_in_binary() -> None:
-    for known in stored():
-        heights = known.scene.heights
-        assert np.array_equal(heights, np.rint(heights * 2.0**60) / 2.0**60)
-        gap = heights.max() - heights
-        assert np.array_equal(heights.max() - gap, heights)
-
-
 def test_files_are_written_anew_by_one_command(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    few = [s for s in build.scenes() if s.name in ("smooth", "rough", "single")]
+    few = [s for s in build.scenes() if s.name in ("rough", "single")]
     monkeypatch.setattr(build, "scenes", lambda: few)
     main = import_module("verification.enclosures.__main__").main
     assert main(["--json", str(tmp_path)]) == 0
-    assert capsys.readouterr().out.count("proven") == 6
-    names = {"smooth", "rough", "near-tie-misses", "near-tie-touches", "single", "oblique"}
+    assert capsys.readouterr().out.count("proven") == 5
+    names = {"rough", "near-tie-misses", "near-tie-touches", "single", "oblique"}
     assert {path.stem for path in tmp_path.glob("*.json")} == names
     for path in tmp_path.glob("*.json"):
         fresh, known = parsed(json.loads(path.read_text(encoding="utf-8"))), named(path.stem)

@@ -61,7 +61,3 @@ def test_friction_law_is_bounded_by_the_printed_table() -> None:
     for column, bound in zip(TABLE3, inputs.law_bounds(), strict=True):
         slack = 5e-4 + 15e6 * 5e-10 / 70 + 0.002 * column.friction_coefficient[-1]
         assert 0 < bound <= 2 * slack / column.friction_coefficient[-1]
-
-
-def test_differences_of_the_smooth_ball_have_hertz_exponents() -> None:
-    assert inputs.differences(TABLE3[0], "R", 128, 1) == pytest.approx((2 / 3, -2 / 3), abs=0.005)

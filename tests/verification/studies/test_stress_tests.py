@@ -5,40 +5,62 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from fnmatch import fnmatchcase
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import mpmath as mp
 import numpy as np
 import pytest
 
 import refimpl as rf
+from appendix_a import wedge
 from refimpl.operators.fft import FFTInfluence
 from tests.changed import changed
 from verification.cases.solvers.stress_tests import counted
-from verification.exact import exact_operators
+from verification.exact import exact_operators, lawful_states, positive_definite
 from verification.exact.dense_influence import DenseInfluence
 from verification.output.result_files import committed, read_result
 from verification.scenes.cross_checks import POLYMER, pressed
-from verification.stress_tests import (
-    conditioning,
-    judge,
-    limits,
-    positive_definite,
-    study,
-)
+from verification.stress_tests import conditioning, judge, limits, study
 from verification.stress_tests.__main__ import main
-from verification.stress_tests.axes import AXES, states
-from verification.stress_tests.axes.contacts import on
-from verification.stress_tests.oracle import Oracle
-from verification.stress_tests.state import Extreme, Judged, Verdict, number
+from verification.stress_tests.axes import AXES, grids, states, topography
+from verification.stress_tests.axes.contacts import on, sheared
+from verification.stress_tests.oracle import Exactly, Guess, NotSettled, Oracle
+from verification.stress_tests.state import EXISTS, Extreme, Judged, Verdict, number
 
+pytestmark = pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
 ALL = [unique for name in AXES for unique, _ in states(name)]
 BALL = pressed(lower=POLYMER, load=30.0, direction=0.7, friction=rf.Friction(1e5, 0.3))
 
 
-@pytest.mark.parametrize("limit", limits.LIMITS, ids=lambda limit: limit.states)
-def test_every_limit_names_states_that_exist(limit: limits.Limit) -> None:
-    assert any(fnmatchcase(unique, limit.states) for unique in ALL)
+def of_row(row: study.Row) -> Judged:
+    """Return what was judged of a state in a result file."""
+    found = {name: row[name] for name in ("status", "error", "limit", "oracle", "note", "data")}
+    return Judged(Verdict(row["verdict"]), **found)
+
+
+def test_the_committed_study_names_every_failure_once_and_nothing_else() -> None:
+    found = committed("extremes")
+    assert found["counts"]["wrong"] == found["counts"]["crash"] == 0
+    assert [row["id"] for row in found["states"]] == ALL
+    unused = {glob for limit in limits.LIMITS for glob in (limit.rule, *limit.states)} - {""}
+    for row in found["states"]:
+        shown = limits.limits_of(row["id"], of_row(row))
+        assert len(shown) == (row["verdict"] != "right"), row["id"]
+        assert row["kind"] == (shown[0].kind.value if shown else None), row["id"]
+        if shown:
+            unused -= {shown[0].rule, *(glob for glob in shown[0].states if fnmatchcase(row["id"], glob))}
+        exists = row["kind"] in (limits.Kind.BEYOND, limits.Kind.MISSED) and row["axis"] != "wedge"
+        assert (row["note"] == EXISTS) == exists, row["id"]
+        assert row["verdict"] != "unjudged" or row["data"]["lost"] > 1e-2, row["id"]
+    assert not unused
+
+
+@pytest.mark.parametrize("limit", limits.LIMITS, ids=lambda limit: limit.what)
+def test_every_limit_states_its_evidence(limit: limits.Limit) -> None:
+    assert all((limit.what, limit.why, limit.evidence))
+    assert bool(limit.rule) != bool(limit.states)
 
 
 def test_the_oracle_on_one_element_is_the_closed_form() -> None:
@@ -52,7 +74,6 @@ def test_the_oracle_on_one_element_is_the_closed_form() -> None:
     assert float(exact.approach) == pytest.approx(expected, rel=1e-15)
 
 
-@pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
 def test_the_oracle_satisfies_the_contact_conditions_wherever_it_starts() -> None:
     oracle = Oracle(BALL, 4)
     support = np.ones((4, 4), dtype=bool)
@@ -66,22 +87,77 @@ def test_the_oracle_satisfies_the_contact_conditions_wherever_it_starts() -> Non
     assert min(found[0].pressure) >= 0
 
 
-@pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
-def test_continuation_arrives_at_the_state_that_the_solver_finds() -> None:
-    scene = replace(BALL, friction=rf.Friction(beta=3.0))  # in beta, from 1 on; the other in the load
-    for each in (scene, replace(BALL, friction=rf.Friction(beta=0.3), periodic=True)):
-        solution = rf.solve(each, 4, method="dense")
-        found = Oracle(each, 4).continued()
-        assert np.array_equal(found.contact, solution.contact.ravel())
-        assert solution.pressure.ravel() == pytest.approx(found.pressure.astype(float), rel=1e-9)
-    tau = replace(BALL, friction=rf.Friction(4e10, 0.0))
-    assert "finds no state" in judge.sought(Oracle(tau, 4))
+@pytest.mark.parametrize(
+    ("scene", "M"),
+    [
+        (replace(BALL, friction=rf.Friction(beta=0.3), periodic=True), 4),  # by the load
+        (replace(BALL, load=300.0, friction=rf.Friction(beta=5.0)), 4),
+        (sheared(1.78, 0.0, soft_below=False), 5),  # by tau alone: with less load no state is lawful
+    ],
+    ids=["periodic", "beta", "tau"],
+)
+def test_continuation_arrives_at_the_state_that_the_solver_finds(scene: rf.Scene, M: int) -> None:
+    solution = rf.solve(scene, M, method="dense")
+    assert solution.status is rf.Status.CONVERGED
+    found = Oracle(scene, M).continued()
+    assert np.array_equal(found.contact, solution.contact.ravel())
+    assert solution.pressure.ravel() == pytest.approx(found.pressure.astype(float), rel=1e-9)
+
+
+def test_a_route_whose_first_solve_fails_leaves_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    follow, tried = Oracle._continued, list[str]()
+
+    def failing(self: Oracle, route: str, share: float) -> Exactly:
+        tried.append(route)
+        if route != "tau":
+            raise NotSettled("at its first solve")
+        return follow(self, route, share)
+
+    monkeypatch.setattr(Oracle, "_continued", failing)
+    Oracle(BALL, 4).continued()
+    assert tried == ["load", "beta", "tau"]
+    with pytest.raises(NotSettled, match="nor tau's"):
+        Oracle(replace(BALL, friction=rf.Friction(beta=0.3)), 4).continued()
+
+
+@pytest.mark.parametrize("tau", [1.0, 10.0, 30.0])
+@pytest.mark.parametrize("seed", range(3))
+def test_continuation_finds_lawful_states_and_no_other(tau: float, seed: int) -> None:
+    """Enumeration of all contact sets, and integer programming over them, are its negative control."""
+    scene = lawful_states.scene(seed, tau, soft_below=seed % 2 == 0)
+    lawful = lawful_states.lawful_states(scene)
+    assert lawful_states.none_is_lawful(scene, lawful_states.M) == (not lawful)
+    oracle = Oracle(scene, lawful_states.M, oblique=False)
+    if not lawful:
+        with pytest.raises(NotSettled):
+            oracle.continued()
+    else:
+        assert any(np.array_equal(oracle.continued().contact, state.ravel()) for state in lawful)
+
+
+def test_what_stands_behind_a_state_that_no_solver_finds() -> None:
+    assert judge.sought(sheared(1.0, 0.0), 5, oblique=False).startswith("a state exists")
+    assert judge.sought(sheared(100.0, 0.0), 5, oblique=False).startswith("no state exists: integer")
+    assert judge.sought(sheared(100.0, 0.0), 5).startswith("continuation finds no state")
+
+
+@pytest.mark.parametrize("block", [0, 24, 25, 75], ids=["pressure", "gap", "tangent", "approach"])
+def test_the_oracle_ends_when_each_of_its_unknowns_has_settled(block: int) -> None:
+    """A large number of one kind excuses no step of another kind."""
+    oracle = Oracle(sheared(1.0, 0.0), 5)
+    state = Guess(np.ones((76, 1)), np.arange(25) < 24, (1.0, 1.0, 1.0))
+    for other in {0, 24, 25, 75} - {block}:
+        state.x[other] = 1e9 if other != 0 else 1.0  # the pressure's peak is also the unit of the others
+    step = np.zeros(76)
+    step[block] = 1e-3
+    assert not oracle._settled(state, step, 1e-8)
+    step[block] = 1e-9
+    assert oracle._settled(state, step, 1e-8)
 
 
 @pytest.mark.parametrize("periodic", [False, True], ids=["free", "periodic"])
 @pytest.mark.parametrize(("friction", "tolerance"), [((0.0, 0.3), 1e-13), ((1e5, 0.3), 1e-12)])
 @pytest.mark.parametrize("prescribed", [False, True], ids=["load", "approach"])
-@pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
 def test_the_oracle_with_facet_tractions_is_the_dense_solver(
     periodic: bool, friction: tuple[float, float], tolerance: float, prescribed: bool
 ) -> None:
@@ -162,7 +238,6 @@ def test_no_contact_is_right_up_to_first_touch(over: float, error: float) -> Non
     assert judge.exact_error(scene, apart)[0] == 1.0  # under a load
 
 
-@pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
 def test_support_is_where_tau_acts(monkeypatch: pytest.MonkeyPatch) -> None:
     """Elements of the contact that are excluded from tau have none in the exact state either."""
     solution = rf.solve(BALL, 4)
@@ -190,15 +265,18 @@ def test_conditions_known_values(monkeypatch: pytest.MonkeyPatch) -> None:
     assert found["CG iterations"] == 3
 
 
-@judge.caught
 def raising(error: Exception) -> Judged:
     raise error
 
 
-@judge.caught
 def endless() -> Judged:
     while True:
         pass
+
+
+def solver(does: Callable[..., Judged], *given: object) -> Callable[[], Judged]:
+    """Return a run in which the code under test does that."""
+    return partial(judge.tested, does, *given)
 
 
 @pytest.mark.parametrize(
@@ -206,18 +284,26 @@ def endless() -> Judged:
     [
         ("right", "value", lambda: number(1e-9, 1e-8, "value", "x")),
         ("wrong", "value", lambda: number(float("nan"), 1e-8, "value", "x")),
-        ("detected failure", "InputError", lambda: judge.caught(rf.Material)(-1.0, 0.3)),
-        ("detected failure", "ArithmeticError", lambda: raising(ArithmeticError("no state"))),
-        ("crash", "ZeroDivisionError", lambda: raising(ZeroDivisionError("division by zero"))),
-        ("crash", "OutOfTime", endless),
+        ("detected failure", "InputError", partial(judge.tested, rf.Material, -1.0, 0.3)),
+        ("detected failure", "InputError", partial(judge.tested, wedge.stresses, 1.0, 0.0, 2.0)),
+        ("detected failure", "NotConverged", solver(raising, rf.NotConverged("no state"))),
+        ("crash", "ArithmeticError", solver(raising, ArithmeticError("from anywhere"))),
+        ("crash", "ZeroDivisionError", solver(raising, ZeroDivisionError("division by zero"))),
+        ("crash", "OutOfTime", solver(endless)),
+        ("unjudged", "NotSettled", partial(raising, NotSettled("the oracle"))),
+        ("unjudged", "ArithmeticError", partial(raising, ArithmeticError("the reference"))),
+        ("unjudged", "IndexError", partial(raising, IndexError("in the oracle"))),
+        ("unjudged", "InputError", partial(raising, rf.InputError("load", -1, "of the reference"))),
+        ("unjudged", "OutOfTime", endless),
     ],
-    ids=["right", "wrong", "refused", "no state", "crash", "endless"],
 )
 def test_verdicts(verdict: str, status: str, run: Callable[[], Judged]) -> None:
     row = study.run_state("a/b/c", Extreme("b", "c", 0.0, run, 0.2))
     assert (row["verdict"], row["status"]) == (verdict, status)
-    assert (row["digits"] is None) == (verdict in ("detected failure", "crash"))
-    assert counted([row]).value == (verdict in ("wrong", "crash"))
+    assert (row["digits"] is None) == (verdict not in ("right", "wrong"))
+    assert study.unexplained([row]) == ["a/b/c"] * (verdict != "right")  # no limit names it
+    assert counted([row]).value == (verdict != "right")
+    assert not study.unexplained([row | {"kind": "a kind"}])
 
 
 def test_an_error_that_the_status_admits_is_a_detected_failure() -> None:
@@ -237,14 +323,7 @@ def test_the_command_runs_an_axis(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         main(["--json", str(path), "--axis", "nonsense"])
 
 
-def test_the_committed_study_has_no_wrong_number_and_a_reason_for_every_failure() -> None:
-    found = committed("extremes")
-    assert len(found["states"]) >= 400
-    assert found["counts"]["wrong"] == found["counts"]["crash"] == 0
-    for row in found["states"]:
-        assert (row["kind"] is None) == (row["verdict"] == "right"), row["id"]
-        if row["kind"] == limits.Kind.BEYOND:
-            assert row["note"].startswith("a state exists"), row["id"]
+TAU = "friction/tau, fft/tau/f = 5.62"
 
 
 @pytest.mark.parametrize(
@@ -252,12 +331,77 @@ def test_the_committed_study_has_no_wrong_number_and_a_reason_for_every_failure(
     [
         ("load/plane, fft/p/E* = 1e+01", "BEYOND"),
         ("friction/tau, soft ball, dense/tau/f = 100", "NONE_FOUND"),
-        ("friction/tau without slopes, dense/tau/f = 100", "EXCLUDED"),
         ("wedge/r = 1/gamma = 1.5707963267948966", "NO_PROBLEM"),
         ("wedge/r = 1/gamma = 1.5707963257948965", "MISSED"),
+        (TAU, None),
+        ("load/plane, dense/p/E* = 1e+01", None),  # right today: a failure would be new
+        ("friction/beta, fft/beta = 10", None),
     ],
 )
-def test_a_state_that_is_not_solved_has_a_kind(unique: str, kind: str) -> None:
+def test_a_state_that_is_not_solved_has_a_kind(unique: str, kind: str | None) -> None:
     assert unique in ALL
-    assert study.kind_of(unique, Verdict.DETECTED) == limits.Kind[kind].value
-    assert study.kind_of(unique, Verdict.RIGHT) is None
+    named = None if kind is None else limits.Kind[kind].value
+    judged = {v: Judged(v, "stagnated", None, 1e-6, "none") for v in Verdict}
+    assert study.kind_of(unique, judged[Verdict.DETECTED]) == named
+    for verdict in (Verdict.RIGHT, Verdict.UNJUDGED, Verdict.WRONG, Verdict.CRASH):
+        assert study.kind_of(unique, judged[verdict]) is None
+
+
+@pytest.mark.parametrize(
+    ("error", "share", "note", "named"),
+    [
+        (1e-9, 0.6, "", True),
+        (1e-9, 0.6, EXISTS, False),
+        (1e-9, 0.5, "", False),
+        (1e-3, 0.6, "", False),
+        (None, 1.0, "", False),
+    ],
+)
+def test_elements_without_tau_are_counted_in_the_state(
+    error: float | None, share: float, note: str, named: bool
+) -> None:
+    found = Judged(Verdict.DETECTED, "iteration limit", error, 1e-6, "x", note, {"without tau": share})
+    assert study.kind_of(TAU, found) == (limits.Kind.EXCLUDED.value if named else None)
+    assert study.kind_of("a/b/c", found) == study.kind_of(TAU, found)
+
+
+def test_a_state_under_an_approach_is_sought_too() -> None:
+    scene = pressed(lower=POLYMER, rms=None)
+    found = judge.by_oracle(scene, 5, approach=1e-30)
+    assert (found.verdict, found.data["without tau"], found.note) == (Verdict.DETECTED, 1.0, EXISTS)
+
+
+def test_a_failed_state_tells_how_much_of_its_contact_carries_no_tau() -> None:
+    judged = judge.by_oracle(sheared(100.0, 0.0), 5, oblique=False)
+    assert (judged.verdict, judged.data["without tau"]) == (Verdict.DETECTED, pytest.approx(16 / 17))
+
+
+@pytest.mark.parametrize(("offset", "verdict"), [(2.0**42, Verdict.RIGHT), (2.0**48, Verdict.UNJUDGED)])
+def test_heights_without_digits_are_no_problem_to_judge(offset: float, verdict: Verdict) -> None:
+    judged = topography.shifted(offset, dyadic=False, method="fft")
+    assert judged.verdict is verdict
+    assert (study.kind_of("a/b/c", judged) == limits.Kind.NO_PROBLEM) == (verdict is Verdict.UNJUDGED)
+
+
+@pytest.mark.parametrize(
+    ("fails", "verdict"),
+    [
+        ((), "right"),
+        (("dense",), "unjudged"),
+        ((None,), "detected failure"),
+        ((None, "dense"), "detected failure"),
+    ],
+    ids=["neither", "the judge", "the solver", "both"],
+)
+def test_a_solver_is_not_blamed_for_its_judge(
+    fails: tuple[str | None, ...], verdict: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solve = rf.solve
+
+    def failing(*given: Any, **options: Any) -> rf.Solution:
+        found = solve(*given, **options)
+        failed = options.get("method") in fails
+        return changed(found, status=rf.Status.ITERATION_LIMIT) if failed else found
+
+    monkeypatch.setattr(rf, "solve", failing)
+    assert judge.judged(partial(grids.against_dense, grids.ridge(6, 2), 6)).verdict == verdict

@@ -1,4 +1,4 @@
-"""A dask.distributed cluster of processes of our own, whose scheduler and worker can be killed."""
+"""A dask.distributed cluster of processes of our own, which ends with the test."""
 
 from __future__ import annotations
 
@@ -7,29 +7,20 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 START_SECONDS = 60.0
-ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-
-
-class Cluster(NamedTuple):
-    """The scheduler's address and its process; the worker's, and what starts another worker."""
-
-    address: str
-    scheduler: subprocess.Popen[bytes]
-    worker: subprocess.Popen[bytes]
-    another: Callable[[], None]
 
 
 @contextmanager
-def cluster(
-    folder: Path, environment: Mapping[str, str] = ONE_THREAD, *, drop: tuple[str, ...] = ()
-) -> Iterator[Cluster]:
-    """A cluster of one worker of one thread; ``environment`` is added to this process's, without ``drop``."""
+def cluster(folder: Path, environment: Mapping[str, str], *, drop: tuple[str, ...]) -> Iterator[str]:
+    """Address of a cluster of one worker of one thread.
+
+    ``environment`` is added to this process's, without ``drop``.
+    """
     import distributed
 
     every = {name: value for name, value in os.environ.items() if name not in drop} | dict(environment)
@@ -44,15 +35,11 @@ def cluster(
     try:
         address = _address(file, made[0])
         alone = ("--no-nanny", "--nthreads", "1", "--local-directory", str(folder))
-
-        def another() -> None:
-            made.append(start("dask_worker", address, *alone))
-
-        another()
+        made.append(start("dask_worker", address, *alone))
         connect: Any = distributed.Client  # untyped
         with connect(address, timeout=START_SECONDS) as client:
             client.wait_for_workers(1, timeout=START_SECONDS)
-        yield Cluster(address, *made, another)
+        yield address
     finally:
         for process in made:
             process.kill()

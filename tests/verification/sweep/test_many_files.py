@@ -14,6 +14,7 @@ from verification.cli import main
 from verification.sweep.study_file import read_study
 
 POINTS = (40, 30)
+pytestmark = pytest.mark.usefixtures("in_this_process")
 SCENE = """
 load = 0.05
 [upper.material]
@@ -60,7 +61,7 @@ def test_keep_going_runs_the_rest_and_leaves_failed_rows(
     study: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     folder = study.parent
-    given = ["--store", str(folder / "n.sqlite"), "--csv", str(folder / "n.csv"), "--workers", "1"]
+    given = ["--store", str(folder / "n.sqlite"), "--csv", str(folder / "n.csv")]
     picture = ["--plot", str(folder / "n.svg"), "--x", "load"]
     assert main(["sweep", str(study), "--keep-going", *given, *picture]) == 1
     rows = list(csv.DictReader((folder / "n.csv").open()))

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import sys
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import refimpl as rf
 from tests.verification.cli.commands import Stream, answer, run, shown
-from verification.cli.sweep import _Line
+from verification.cli.sweep import _Line, directions_note
 from verification.sweep import engine
 from verification.sweep.curves import curves
 from verification.sweep.engine import Progress, Sweep
@@ -20,6 +23,7 @@ from verification.sweep.run import COORDINATES, OUTCOMES
 from verification.sweep.study_file import read_study
 
 PATH = "lower.surface[0].path"
+pytestmark = pytest.mark.usefixtures("in_this_process")
 
 
 @pytest.fixture(autouse=True)
@@ -31,13 +35,13 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_csv_to_standard_output_is_all_that_is_there() -> None:
-    shown("sweep study.toml --workers 1 --csv table.csv")
-    assert shown("sweep study.toml --workers 1 --csv -") == Path("table.csv").read_text()
+    shown("sweep study.toml --csv table.csv")
+    assert shown("sweep study.toml --csv -") == Path("table.csv").read_text()
     assert not Path("-").exists()
 
 
 def test_a_document_and_a_failed_run(monkeypatch: pytest.MonkeyPatch) -> None:
-    document = answer("sweep study.toml --workers 1")
+    document = answer("sweep study.toml")
     assert (document["found"], document["finished"], document["failures"]) == (0, 2, {})
     assert [row["load"] for row in document["rows"]] == [1.0, 70.0]
     failed = Sweep(2, 0, {"key": "ValueError: no luck"}, [], [], 1.0)
@@ -61,7 +65,7 @@ def test_a_sweep_over_maps_has_one_size_for_all_offsets_and_a_curve_for_each() -
     found = read_study("study.toml")
     assert found.scene["size"] == pytest.approx([44e-6, 80e-6])
     assert "no size given: 4.4e-05 x 8e-05 m" in found.notes[0]
-    assert run("sweep study.toml --workers 1 --json s.json").status == 0
+    assert run("sweep study.toml --json s.json").status == 0
     by_file = curves(json.loads(Path("s.json").read_text())["rows"], "sliding_offset", "contact_area", PATH)
     assert {Path(str(name)).name: len(points) for name, points in by_file.items()} == {
         "low.npy": 3,
@@ -74,7 +78,7 @@ def test_runs_that_did_not_converge_are_no_success() -> None:
     Path("study.toml").write_text(
         'scene = "table1-rough"\nrealisations = 2\n[vary]\ngrid = [12]\n[solve]\ntolerance = 1e-30\n'
     )
-    statuses = answer("sweep study.toml --workers 1", 1)["statuses"]
+    statuses = answer("sweep study.toml", 1)["statuses"]
     assert sum(statuses.values()) == 2
     assert set(statuses) <= {"iteration limit", "stagnated"}
     printed = shown("sweep study.toml --csv t.csv", 1)  # found in the store
@@ -85,7 +89,7 @@ def test_runs_that_did_not_converge_are_no_success() -> None:
     assert "2 of 2 runs did not converge" in run("sweep study.toml --csv -").err
 
 
-@pytest.mark.parametrize("status", list(rf.Status))
+@pytest.mark.parametrize("status", [rf.Status.CONVERGED, rf.Status.CYCLED, rf.Status.STAGNATED])
 def test_rows_are_solutions_or_not_by_their_status(
     status: rf.Status, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -105,17 +109,22 @@ def test_rows_are_solutions_or_not_by_their_status(
 
 def test_a_grid_that_is_too_coarse_is_reported() -> None:
     Path("study.toml").write_text(
-        'scene = "table1-rough"\nrealisations = 3\n[vary]\ngrid = 16\n'
-        "load = [1.0, 70.0]\nlower_rms = 0.8e-6\n"
+        'scene = "table1-rough"\nrealisations = 3\n[vary]\ngrid = 16\nlower_rms = 0.8e-6\n'
     )
-    assert "points: use a finer grid" in " ".join(shown("sweep study.toml --workers 1").split())
+    assert "points: use a finer grid" in " ".join(shown("sweep study.toml").split())
 
 
-@pytest.mark.parametrize("terminal", [True, False])
-def test_progress_is_for_terminals(terminal: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys, "stderr", Stream(terminal))
+def test_progress_counts_failures_and_the_time_that_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stderr", Stream(terminal=True))
     line = _Line()
     line.count(Progress(3, 10, 1, 125.0))
     line.close()
-    written = sys.stderr.getvalue()
-    assert ("[3/10], 1 failed 2 min left" in written) if terminal else written == ""
+    assert "[3/10], 1 failed 2 min left" in sys.stderr.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("turns", "hint"), [((0.0,), False), ((0.0, math.pi), False), ((0.0, 0.785, math.pi), True)]
+)
+def test_directions_without_their_opposite_are_remarked_on(turns: tuple[float, ...], hint: bool) -> None:
+    study: Any = SimpleNamespace(vary={"sliding_direction": turns})
+    assert bool(directions_note(study)) is hint

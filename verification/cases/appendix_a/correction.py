@@ -69,11 +69,7 @@ def near_field(found: rf.Solution, material: rf.Material, sign: float, reach: in
 
 
 def remedied(scene: rf.Scene, size: int, reach: int = 1) -> rf.Solution:
-    """Return the scene (sliding along x) with near-field coefficients computed on the slopes, `reach`
-    elements far.
-
-    Raises RuntimeError if that does not settle.
-    """
+    """Return the scene with coefficients on the slopes, `reach` elements far. RuntimeError if unsettled."""
     lower, upper = scene.heights(scene.grid(size))
     found = rf.solve(scene, size)
     for _ in range(ROUNDS):
@@ -100,8 +96,7 @@ def numbers(found: rf.Solution) -> Array:
 
 
 def change(found: rf.Solution, plain: rf.Solution) -> Array:
-    """Return the percentages by which mu, A and f_max changed; that of Q, which may be nil, is of the
-    friction force."""
+    """Return the percentages by which mu, A and f_max changed; that of Q is of the friction force."""
     base = numbers(plain)
     scale = np.array([*base[:3], plain.friction_force])
     percent: Array = 100 * (numbers(found) - base) / scale
@@ -132,8 +127,7 @@ def over_slopes(pair: str) -> dict[str, object]:
 
 
 def restored(pair: str, quantity: str) -> float:
-    """Return the share of the correction's changes that the remedy makes, fitted over realisations and
-    slopes."""
+    """Return the remedy's share of the correction's changes, fitted over realisations and slopes."""
     k = QUANTITIES.index(quantity)
     cured, near = (
         np.concatenate([changes(pair, slope)[name][:, k] for slope in SLOPES]) for name in TREATMENTS

@@ -26,8 +26,7 @@ POINTS_REASON = "the required error of plane results, a hundredth of the paper's
 
 
 def percent(difference: Array, nu: float, offsets: Array) -> Array:
-    """Return a displacement difference as a percentage of the flat coefficient at the same offset, with its
-    sign."""
+    """Return a displacement difference, signed, in percent of the flat coefficient at its offset."""
     return 100.0 * difference / pressed_strip(offsets, nu)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from appendix_a.fem3d.coefficients import LABELS, Coefficients3D, coefficients, corrected
-from appendix_a.fem3d.leading_order import facet_part, far_part, first_order, growth_coefficient
+from appendix_a.fem3d.leading_order import first_order
 from appendix_a.fem3d.patch import normal_coefficient, tilted_plane
 from appendix_a.fem3d.surface import X, Y, flat_sample, sample
 from appendix_a.fem3d.table import Series, Table3D
@@ -103,27 +103,9 @@ def correction() -> Measured:
     Source: exact tractions of a facet; {SOURCE}
     Tolerance: required of the correction; measured 33, 11 and 8 at 1, 2 and 3 elements
     """
-    return smallest_drop(NU, corrected(flank(NU), ridge(SLOPE), NU).antisymmetric)
-
-
-def smallest_drop(nu: float, left: Array) -> Measured:
-    """Return the smallest quotient of the antisymmetric errors at 1, 2 and 3 elements and of what is left of
-    them."""
-    plain = flank(nu).antisymmetric
+    plain, left = flank(NU).antisymmetric, corrected(flank(NU), ridge(SLOPE), NU).antisymmetric
     data = {"elements away": [1, 2, 3], "without": plain.tolist(), "with": left.tolist()}
     return Measured(value=float(np.abs(plain / left).min()), data=data)
-
-
-@case("fem3d/correction-and-growth", metric="at_least", tolerance=5.0, tier="full")
-def correction_and_growth() -> Measured:
-    """Error that the correction leaves.
-
-    Claim: at nu 0 the correction and the part that grows leave a fifth of the antisymmetric error
-    Source: appendix_a.fem3d.leading_order; {SOURCE}
-    Tolerance: required of the first-order part; the correction alone reaches 9, 4.3 and 3.6 here
-    """
-    grows = (far_part(ridge(SLOPE), X, Y, 0.0) / flank(0.0).flat)[1:4]
-    return smallest_drop(0.0, corrected(flank(0.0), ridge(SLOPE), 0.0).antisymmetric - grows)
 
 
 def ridge(slope: float, position: float = FLANK) -> Waviness:
@@ -132,8 +114,7 @@ def ridge(slope: float, position: float = FLANK) -> Waviness:
 
 
 def odd_part(surface: Waviness, nu: float, level: int = 2) -> Array:
-    """Return half the difference (10,) between a slope and its opposite, over flat, without the boundary's
-    1/R^2."""
+    """Return half the difference (10,) between a slope and its opposite, over flat, less 1/R^2."""
     opposite = Waviness(-surface.slope_deg, surface.wavelength, surface.position, surface.kind)
     near, far = (
         0.5 * (sample(surface, nu, radius, level).down - sample(opposite, nu, radius, level).down)
@@ -156,23 +137,6 @@ def first_order_theory() -> Measured:
         theory = first_order(surface, X, Y, NU) / normal_coefficient(X, Y, NU)
         off[f"{kind} at {position}"] = float(np.abs(odd_part(surface, NU) - theory).max())
     return Measured(value=max(off.values()), data={"largest difference": off})
-
-
-@case("fem3d/growth", metric="relative", tolerance=0.02, tier="full")
-def growth_fit() -> Measured:
-    """Coefficient of the part that grows with offset / wavelength.
-
-    Claim: fitted to the finite elements on a flank at nu 0 it is (1 - 2 nu)^2 / (4 (1 - nu)) = 1/4
-    Source: appendix_a.fem3d.leading_order, `growth`
-    Tolerance: mesh level 2 errs by 4e-5 of flat where the part itself is 1e-3 to 4e-3
-    """
-    nu, surface = 0.0, ridge(1.0)
-    flat = normal_coefficient(X, Y, nu)
-    measured = (odd_part(surface, nu) - facet_part(surface, X, Y, nu) / flat)[1:4]
-    theory = (far_part(surface, X, Y, nu) / flat)[1:4]
-    scale = float(measured @ theory / (theory @ theory))
-    data = {"FEM": measured.tolist(), "theory": theory.tolist()}
-    return Measured(value=scale * growth_coefficient(nu), reference=growth_coefficient(nu), data=data)
 
 
 @case("fem3d/tilt", metric="at_most", tolerance=2e-3, tier="full")

@@ -34,8 +34,7 @@ def errors(place: str, nu: float, slopes: Array, *, pair: bool) -> Array:
 
 
 def worst(slope: float, nu: float, group: str, *, pair: bool) -> float:
-    """Return the largest error (percent, without sign) of a group of coefficients over crest, flank and
-    valley."""
+    """Return the largest unsigned error (percent) of a group of coefficients over crest, flank, valley."""
     found = [errors(place, nu, np.array([slope]), pair=pair)[0, GROUPS[group]] for place in PLACES]
     return 100 * float(np.abs(found).max())
 

@@ -53,8 +53,7 @@ def first_order_limit() -> Measured:
 
 @cache
 def one_mesh(slope: float, wavelength: float) -> Array:
-    """Return the rough minus flat displacement (m,) at NEIGHBOURS on a flank, nu 0.3; known to 0.01
-    points."""
+    """Return the rough minus flat displacement (m,) at NEIGHBOURS on a flank, nu 0.3; known to 0.01."""
     reach = 3 * wavelength
     boundary = sinusoid_boundary(slope, wavelength, 0.25, reach)
     return departure(setup_for(wavelength, reach), 1, boundary, NEIGHBOURS).at(0.3)

@@ -25,35 +25,6 @@ def shipped_map() -> CoefficientMap:
         return CoefficientMap.read(path)
 
 
-@case("appendix-fem/six-map-points", metric="at_most", tolerance=0.05, tier="full")
-def six_map_points() -> Measured:
-    """Six points of the shipped map, solved afresh between its nodes.
-
-    Claim: the map, interpolated, gives the coefficients to 0.05 percentage points, on short waves as well
-    Source: refimpl/data/coefficient_error.json
-    Tolerance: 0.02 stated by the map, and the splines' error between nodes; measured 0.035
-    """
-    table = shipped_map()
-    offsets = np.array(table.offset)
-    points = (
-        (8.0, 90.0, 0.2, 0.3),
-        (25.0, 11.0, 0.07, 0.45),
-        (12.0, 50.0, 0.05, 0.0),
-        (12.0, 45.0, 0.45, 0.4999),
-        (18.0, 64.0, 0.3, 0.2),
-        (25.0, 128.0, 0.125, 0.4),
-    )
-    errors = []
-    for slope, wavelength, position, nu in points:
-        reach = max(3 * wavelength, 40.0)
-        boundary = sinusoid_boundary(slope, wavelength, position, reach)
-        fresh = departure(setup_for(wavelength, reach), 1, boundary, offsets).at(nu)
-        looked_up = table.departure(slope, wavelength, position, nu)
-        errors.append(float(np.max(np.abs(percent(looked_up - fresh, nu, offsets)))))
-    data = {"slope, wavelength, position, nu": [list(p) for p in points], "error, percentage points": errors}
-    return Measured(value=max(errors), unit="percentage points", data=data)
-
-
 RANDOM_POINTS, DRAWN_FROM, SEED = 120, 60, 2001  # the seed was chosen before any point was computed
 
 

@@ -171,8 +171,7 @@ def pressed(amplitude: float, nu: float, approach: float, *, finite: bool) -> tu
 
 
 def approaches(slope_deg: float, nu: float, share: float) -> tuple[float, float]:
-    """Return the relative error of the half-space's approach by first-order theory, and what finite strain
-    adds to it.
+    """Return the half-space's relative error of approach by first order, and what finite strain adds.
 
     At a mean pressure of ``share`` p*: the approaches of the linear and of the neo-Hookean wave count over
     Westergaard's at their own loads, which differ by little, so that the mesh's error cancels.
@@ -191,7 +190,6 @@ def approaches(slope_deg: float, nu: float, share: float) -> tuple[float, float]
 
 
 def _moment(amplitude: float, modulus: float, load: float) -> float:
-    """Return the mean of height times Westergaard's pressure."""
     x = (np.arange(20000) + 0.5) / 20000 - 0.5
     return float(np.mean(wave_height(x, amplitude) * Wave(load, amplitude, 1.0, modulus).pressure(x)))
 

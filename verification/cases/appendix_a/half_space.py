@@ -52,8 +52,7 @@ def _space() -> list[solid_half_space.SolidJudged]:
 
 
 def _rates(contacts: list[Judged] | list[solid_half_space.SolidJudged]) -> dict[str, list[float]]:
-    """Return, for each quantity, the share of contacts where what is stated holds, and the median of stated
-    over true."""
+    """Return, by quantity, the share of contacts where the statement holds, and median stated over true."""
     found: dict[str, list[float]] = {}
     for name in QUANTITIES:
         pairs = [(abs(c.true[name]), c.stated[name]) for c in contacts if name in c.true]

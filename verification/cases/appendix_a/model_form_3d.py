@@ -55,8 +55,7 @@ def over_meshes(values: list[float]) -> Estimate:
 def differences(
     approach: Estimate, friction: Estimate, *, correction: bool
 ) -> dict[str, tuple[float, float]]:
-    """Return the model against finite elements and its uncertainty, as fractions; all relative to a vanishing
-    slope."""
+    """Return the model against finite elements, and the uncertainty, as fractions of a vanishing slope's."""
     steep, slight = ([by_model(s, M, correction=correction) for M in GRIDS] for s in (SLOPE, SLIGHT))
     sunk = Estimate.of(*(a[0] / b[0] for a, b in zip(steep, slight, strict=True)))
     mu = Estimate.of(*(a[1] / b[1] for a, b in zip(steep, slight, strict=True)))

@@ -52,8 +52,7 @@ class Modelled:
 
 
 def scene_of(pair: WavyPair, load: float, M: int) -> rf.Scene:
-    """Return the pair on M x M elements of one wavelength, constant along y; `load` per wavelength and
-    thickness."""
+    """Return the pair on M x M elements, constant along y; `load` per wavelength and thickness."""
     x = (np.arange(M) + 0.5) / M - 0.5
     above, below = (
         rf.Body(rf.Material(body.E, body.nu), np.outer(z, np.ones(M)))
@@ -103,8 +102,7 @@ def by_fem(sequence: Sequence) -> Numbers:
 
 
 def percent(other: Estimate, fem: Estimate) -> tuple[float, float]:
-    """Return the difference to the finite elements and its uncertainty, in percent of the finite elements'
-    value."""
+    """Return the difference to the finite elements and its uncertainty, in percent of their value."""
     return 100 * (other.value / fem.value - 1), 100 * (other.error + fem.error) / abs(fem.value)
 
 
@@ -142,8 +140,7 @@ def over_slopes(
 
 
 def worst(data: Mapping[str, object], variant: str, slope: float) -> tuple[float, str]:
-    """Return the largest difference (percent, without sign) of a variant at a slope, and the quantity that
-    has it."""
+    """Return the largest unsigned difference (percent) of a variant at a slope, and its quantity."""
     at = SLOPES.index(slope)
     labels = [label for label in data if label.endswith(variant)]
     values = {label: abs(np.asarray(data[label], dtype=float)[at]) for label in labels}

@@ -69,7 +69,7 @@ def scene_of(pair: WavyPair, M: int) -> rf.Scene:
     return rf.Scene(above, below, rf.Friction(beta=pair.beta), load, side=1.0, periodic=True)
 
 
-def _by_model(pair: WavyPair) -> tuple[rf.Solution, HalfSpaceError, float]:
+def by_model(pair: WavyPair) -> tuple[rf.Solution, HalfSpaceError, float]:
     """Return the solution, its error and its approach from first contact over the amplitude."""
     scene = scene_of(pair, M)
     solution = rf.solve(scene, M, tolerance=1e-6)
@@ -81,7 +81,7 @@ def judged(lower: Material, upper: Material, shift: float, slope_deg: float) -> 
     """Solve one pair of asperities."""
     steep, slight = (WavyPair(s, shift, lower, upper, beta=BETA) for s in (slope_deg, SLIGHT))
     approach, mu = np.array(by_elements(steep, ELEMENTS)) / np.array(by_elements(slight, ELEMENTS))
-    (solution, error, first), (plain, _, flat) = _by_model(steep), _by_model(slight)
+    (solution, error, first), (plain, _, flat) = by_model(steep), by_model(slight)
     datum = solution.details.problem.datum
     asked = approach * flat * steep.amplitude - datum
     at = rf.solve(scene_of(steep, M), M, tolerance=1e-6, approach=asked)

@@ -124,10 +124,7 @@ def _draw(random: np.random.Generator, kind: str) -> Profiles:
 
 
 def by_elements(profiles: Profiles) -> Contact:
-    """Return the contact by finite elements on a mesh that is fine at its ends, as a first solve finds them.
-
-    Raises NotConverged.
-    """
+    """Return the contact on a mesh fine at the ends that a first solve finds. Raises NotConverged."""
     plain = MeshPlan(CELLS, ZONE, LEVELS[0])
     marks = _pressed(profiles, plain, plain).material_ends
     return _pressed(profiles, *(MeshPlan(CELLS, ZONE, LEVELS[1], ends) for ends in marks))
@@ -172,10 +169,7 @@ def numbers(profiles: Profiles, solution: rf.Solution) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Judged:
-    """One contact: relative errors by quantity: true, stated, and of first order.
-
-    ``warned``: the solution warns of the half-space.
-    """
+    """One contact: relative errors by quantity (true, stated, of first order), whether ``warned``."""
 
     true: dict[str, float]
     stated: dict[str, float]

@@ -19,8 +19,7 @@ FLOOR = 1e-12
 
 
 def random_points(count: int) -> Iterator[tuple[float, float, float]]:
-    """Yield (r, theta, gamma): r/a in [1e-4, 1e4], gamma in [1e-6, 1.5], every other one even in its
-    logarithm."""
+    """Yield (r, theta, gamma): r/a in [1e-4, 1e4], gamma in [1e-6, 1.5], every other logarithmic."""
     rng = np.random.default_rng(SEED)
     for n in range(count):
         gamma = rng.uniform(1e-6, 1.5) if n % 2 else np.exp(rng.uniform(np.log(1e-6), np.log(1.5)))
@@ -28,8 +27,7 @@ def random_points(count: int) -> Iterator[tuple[float, float, float]]:
 
 
 def departure(r: float, theta: float, gamma: float, expected: tuple[float, ...]) -> float:
-    """Return the largest difference of the fast path's components from ``expected``, over the largest
-    component."""
+    """Return the fast path's largest difference from ``expected``, over the largest component."""
     values = np.array(wedge.stresses(r, theta, gamma))
     return float(np.max(np.abs(values - np.array(expected))) / np.max(np.abs(values)))
 

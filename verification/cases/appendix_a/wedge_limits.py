@@ -28,8 +28,7 @@ def radial(r: float, theta: Array, gamma: float) -> Array:
 def departure(
     limit: Callable[[float, Array, float], Array], r: float, gamma: float, angles: int = 7
 ) -> float:
-    """Return the largest difference of the wedge's stresses from a limit at a distance, over evenly spaced
-    angles."""
+    """Return the wedge's largest difference of stress from a limit at a distance, over even angles."""
     theta = np.linspace(-1, 1, angles) * (np.pi / 2 - gamma)
     return float(np.abs(np.array(wedge.stresses(r, theta, gamma)) - limit(r, theta, gamma)).max())
 

@@ -28,8 +28,7 @@ def solved(name: str, M: int) -> rf.Solution:
 
 
 def normal_force(solution: rf.Solution) -> float:
-    """Return Eq. (2) with trigonometric functions of angles measured on the returned surfaces, exactly
-    summed."""
+    """Return Eq. (2), exactly summed, by trigonometry of angles measured on the returned surfaces."""
     common = np.add(*solution.surfaces) / 2
     border = 1 if solution.grid.periodic else 0
     wide, inner = np.pad(common, border, mode="wrap"), slice(border, len(common) + border)
@@ -74,8 +73,7 @@ def prescribed_approach() -> Measured:
 
 @cache
 def loading_curve(nodes: int) -> tuple[Array, Array, float]:
-    """Return the Hertz scene pressed to Gauss's approaches: weights dDelta (m), loads (N), final elastic
-    energy (J).
+    """Return Gauss's weights dDelta (m) on the Hertz scene, loads (N), final elastic energy (J).
 
     With delta = delta_end t^2 the load goes as t^3, which Gauss's rule in t integrates exactly but for the
     kinks where elements join the contact.

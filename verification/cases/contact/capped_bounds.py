@@ -17,8 +17,7 @@ ROUNDING = 1e-12
 
 
 def shares_of_bounds(seed: int) -> dict[str, list[float]]:
-    """Return the error over bound of pressure, approach and mu by tolerance; infinite where a set is marked
-    wrongly."""
+    """Return error over bound of pressure, approach and mu by tolerance; infinite on a wrong set."""
     bare = rough_scene(seed)
     bare = replace(bare, friction=rf.Friction(0.0, bare.friction.beta))  # tau's active set is held by bounds
     hardness = max(SHARES[seed % 4] * peak_of(bare, GRID), 1.02 * bare.load / SIDE**2)

@@ -26,8 +26,7 @@ COARSENED = 4
 
 @cache
 def solved(M: int, x: float = 0.0, y: float = 0.0) -> rf.Solution:
-    """Return the scene with the sphere's axis moved by the shares ``x``, ``y`` of an element from the
-    middle."""
+    """Return the scene, its axis ``x``, ``y`` shares of an element from the middle."""
     h = SCENE.lengths[0] / M
     offset = (2 * np.arange(M) + 1 - M) * (h / 2)
     ball = ((offset - x * h)[:, None] ** 2 + (offset - y * h)[None, :] ** 2) / (2 * RADIUS)
@@ -137,8 +136,7 @@ def profile() -> Measured:
 
 @cache
 def mean_radii(M: int, shifts: int) -> tuple[float, float]:
-    """Return the radii (m) of the mean area, raw and perimeter-corrected, over ``shifts^2`` positions of the
-    axis.
+    """Return the mean area's radii (m), raw and perimeter-corrected, over ``shifts^2`` axes.
 
     Positions fill one element evenly. Mirror images have the same area, so that only an eighth of them is
     solved and counted with its multiplicity.

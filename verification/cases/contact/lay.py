@@ -1,18 +1,15 @@
-"""Sliding over a surface with a lay: forces and real contact area over the sliding direction."""
+"""Sliding over a surface with a lay: elastic friction over the direction."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
-from functools import cache
 
 import numpy as np
 
 import refimpl as rf
-from refimpl.grid import Array, Grid
+from refimpl.grid import Grid
 from verification.cases import Measured, case
 from verification.exact.hertz import Sphere
-from verification.reproduction.table1 import SMOOTH, hertz
 
 STEEL = rf.Material(E=200e9, nu=0.3)
 LAY = 0.5  # rad
@@ -52,56 +49,3 @@ def weak_lay() -> Measured:
     found, exact = forces[..., 0], forces[..., 1]
     off = math.sqrt(float(np.mean((found - exact) ** 2) / np.mean(exact**2)))
     return Measured(off)
-
-
-RMS, LENGTHS = 1.68e-6, {"isotropic": (104e-6, 104e-6), "lay along x": (208e-6, 52e-6)}
-"""The roughest flat of the paper's Fig. 10, and one of the same mean length with a lay (m)."""
-SEEDS, DIRECTIONS = range(1, 25), tuple(math.radians(angle) for angle in range(0, 360, 45))
-"""Fixed beforehand; not selected."""
-
-
-@cache
-def turned(name: str) -> Array:
-    """Return mu, real contact area (m^2) and elastic part of mu: ``(seeds, directions, 3)``."""
-    rows = []
-    for seed in SEEDS:
-        roughness = rf.GaussianRoughness(RMS, LENGTHS[name], seed)
-        lower = rf.Body(SMOOTH.lower.material, SMOOTH.lower.surface + roughness)
-        row = []
-        for direction in DIRECTIONS:
-            solution = rf.solve(replace(SMOOTH, lower=lower, sliding_direction=direction), grid=128)
-            if not solution.converged:
-                raise RuntimeError(f"seed {seed}: the solver ended {solution.status.value}")
-            slopes, P = solution.slopes, solution.normal_force
-            elastic = np.sum(solution.pressure * slopes.sin_x * slopes.cos_y) * solution.grid.element_area
-            row.append((solution.friction_coefficient, solution.contact_area, float(elastic) / P))
-        rows.append(row)
-    return np.array(rows)
-
-
-@case("reference/lay-friction", metric="at_least", tolerance=1.63, tier="full")
-def fig10_lay() -> Measured:
-    """Surface with a lay, as in Fig. 10: friction and real contact area over the sliding direction.
-
-    Claim: with lx = 4 ly the elastic part of friction scatters more across the lay than along it; the real
-    contact area does not depend on the direction
-    Source: paper Eq. (9) and Fig. 10, for l_x different from l_y
-    Tolerance: rms of the elastic part across the lay over that along it, of 24 realisations: equal variances
-    exceed it with a probability of 1 % (F distribution of 24 and 24 degrees of freedom, 2.66)
-    """
-    data: dict[str, object] = {"direction (deg)": np.degrees(DIRECTIONS)}
-    for name in LENGTHS:
-        mu, area, elastic = np.moveaxis(turned(name), 2, 0)
-        data |= {
-            f"mu, {name}": mu.mean(axis=0),
-            f"A over its mean, {name}": area.mean(axis=0) / area.mean(),
-            f"rms elastic part of mu, {name}": np.sqrt(np.mean(elastic**2, axis=0)),
-        }
-    elastic, area = turned("lay along x")[..., 2], turned("lay along x")[..., 1]
-    along, across = (math.sqrt(float(np.mean(elastic[:, which] ** 2))) for which in ([0, 4], [2, 6]))
-    spread = float(np.ptp(area.mean(axis=0)) / area.mean())
-    note = (
-        f"elastic part {across:.2e} across and {along:.2e} along the lay; mean areas of the directions "
-        f"differ by {spread:.1%}; Hertz contact radius {hertz().contact_radius * 1e6:.0f} um"
-    )
-    return Measured(across / along, data=data, note=note)

@@ -19,8 +19,7 @@ ROUNDING = (
 
 
 def misfit(state: Manufactured, method: Method) -> float:
-    """Return the largest difference of pressure and traction over the peak, and of approach; infinite on
-    another set."""
+    """Return the largest difference of p and traction over the peak, of approach; infinite off the set."""
     oblique, exact = state.oblique, state.slope_correction
     found = rf.solve(
         state.scene, state.M, method=method, tolerance=1e-13, oblique=oblique, slope_correction=exact

@@ -1,17 +1,16 @@
-"""Rectangular domains and oblong elements: both solvers, images of a scene, closed forms, and the work."""
+"""Rectangular domains and oblong elements: the paper's scheme and closed forms."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
-from itertools import product
 
 import numpy as np
 
 import refimpl as rf
-from refimpl.grid import Array, Grid, Mask
+from refimpl.grid import Grid, Mask
 from verification.cases import Measured, case, family
 from verification.cases.contact.scenes import MODULUS
 from verification.cases.solvers import cross_check
@@ -27,42 +26,6 @@ from verification.scenes.rectangles import rectangles
 def trials() -> tuple[Trial, ...]:
     """Return the scenes, each solved once for all rows."""
     return cross_check.ended_well(rectangles())
-
-
-def numbers_difference(trial: Trial) -> float:
-    """Return the largest of the differences that `cross_check` judges one by one, and that of the corrected
-    area."""
-    corrected = abs(trial.dense.contact_area_corrected - trial.fft.contact_area_corrected)
-    return max(
-        corrected / trial.dense.contact_area, *(difference(trial) for difference in cross_check.NUMBERS)
-    )
-
-
-def contact_difference(trial: Trial) -> float:
-    """Return the largest difference of the pressures over the peak; infinite on another contact set."""
-    if not np.array_equal(trial.dense.contact, trial.fft.contact):
-        return math.inf
-    return cross_check.pressure_difference(trial)
-
-
-@family(
-    "difference, title, claim, tolerance_reason",
-    {
-        "rectangles/dense-pressure": (
-            contact_difference, "Dense reference against production solver on rectangles",
-            "on rectangles with square and oblong elements both solvers find the same contact, and pressures "
-            "that agree to 1e-9 of the peak",
-            "both solvers have the tolerance 1e-12; a thousand times that"),
-        "rectangles/dense-numbers": (
-            numbers_difference, "Numbers of both solvers on rectangles",
-            "mu, Q / N, A, the perimeter-corrected A and the approach of both solvers agree to 1e-9",
-            "as for pressures"),
-    },
-    metric="at_most", tolerance=1e-9, source=cross_check.SOURCE,
-)  # fmt: skip
-def both_solvers(difference: Callable[[Trial], float]) -> Measured:
-    """Judge the largest difference of all scenes."""
-    return worst_of({trial.name: difference(trial) for trial in trials()})
 
 
 @case("rectangles/paper-scheme", metric="at_most", tolerance=1e-4)
@@ -82,84 +45,11 @@ def paper_scheme() -> Measured:
     return worst_of({trial.name: difference(trial) for trial in trials() if not trial.scene.periodic})
 
 
-# --- images ---
-
-IMAGES: Mapping[str, tuple[Callable[[Array], Array], Callable[[float], float], int]] = {
-    "mirrored in x": (lambda z: z[::-1], lambda phi: math.pi - phi, -1),
-    "mirrored in y": (lambda z: z[:, ::-1], lambda phi: -phi, -1),
-    "transposed": (lambda z: z.T, lambda phi: math.pi / 2 - phi, -1),
-    "rotated by 90": (lambda z: z.T[::-1], lambda phi: phi + math.pi / 2, 1),
-    "rotated by 180": (lambda z: z[::-1, ::-1], lambda phi: phi + math.pi, 1),
-}
-"""Change of heights, change of the sliding direction, sign of Q."""
-
-
-def imaged(trial: Trial, change: Callable[[Array], Array], phi: float) -> rf.Solution:
-    """Return the dense solution of an image of a scene's heights."""
-    base = trial.dense
-    lower, upper = (np.ascontiguousarray(change(z)) for z in trial.scene.sampled(base.grid))
-    same = lower.shape == base.grid.shape
-    grid = Grid((lower.shape[0], lower.shape[1]), base.grid.lengths if same else base.grid.lengths[::-1])
-    scene = replace(
-        trial.scene,
-        side=None,
-        size=grid.lengths,
-        sliding_direction=phi,
-        sliding_offset=0.0,
-        lower=rf.Body(trial.scene.lower.material, rf.ArraySurface(lower, pixel=grid.spacings)),
-        upper=rf.Body(trial.scene.upper.material, rf.ArraySurface(upper, pixel=grid.spacings)),
-    )
-    switches = base.details.problem.terms
-    options = {"slope_correction": True} if switches.slope_correction else {"coupled": switches.coupled}
-    return rf.solve(
-        scene,
-        grid.shape,
-        method="dense",
-        tolerance=1e-12,
-        oblique=switches.oblique,
-        tilted=switches.tilted,
-        **{**trial.options, **options},
-    )
-
-
-def decided(solution: rf.Solution) -> bool:
-    """Return True if the proven bounds decide the contact of every element."""
-    bounds = solution.details.bounds
-    return bool(np.all(bounds.in_contact | bounds.out_of_contact))
-
-
-def image_difference(trial: Trial, image: str) -> float:
-    """Return the larger of the pressures' difference over the peak and of Q's over N."""
-    base, (change, turned, sign) = trial.dense, IMAGES[image]
-    found = imaged(trial, change, turned(trial.scene.sliding_direction))
-    off = float(np.abs(found.pressure - change(base.pressure)).max()) / base.max_pressure
-    return max(off, abs(found.binormal_force - sign * base.binormal_force) / base.normal_force)
-
-
-@case("rectangles/images", metric="at_most", tolerance=1e-12, tier="full")
-def images() -> Measured:
-    """Mirrored and rotated copies of rectangular scenes.
-
-    Claim: pressures of an image are the image of the pressures, to 1e-12 of the peak, and Q has its sign,
-    wherever the proven bounds decide on every element
-    Source: symmetry of Eqs (1)-(7) under reflections and quarter turns
-    Tolerance: rounding of the dense solver times a condition number below 2e3; measured 8e-15
-    """
-    chosen = [trial for trial in trials() if decided(trial.dense)]
-    off = {
-        f"{trial.name}, {image}": image_difference(trial, image) for trial, image in product(chosen, IMAGES)
-    }
-    left = ", ".join(trial.name for trial in trials() if trial not in chosen) or "none"
-    note = f"{len(chosen)} scenes, {len(IMAGES)} images each; bounds undecided on: {left}"
-    return replace(worst_of(off), note=note)
-
-
 # --- a square in a rectangle ---
 
 
 def embedded(before: int, after: int) -> tuple[rf.Solution, rf.Solution, Mask]:
-    """Return a square scene and the same heights in the midst of a longer domain; the square's elements in
-    it."""
+    """Return a square scene, the same heights amid a longer domain, and the square's elements in it."""
     M, side = 36, 1.61e-3
     scene = pressed(radius=0.05, rms=0.3e-6, load=10.0, direction=0.7)
     columns, square = M + before + after, slice(before, before + M)
@@ -342,61 +232,3 @@ def westergaard_order() -> Measured:
     """
     sizes = (32, 64, 128)
     return farthest_from_two({name: [wave_errors(name, M)[1] for M in sizes] for name in WAVES}, sizes)
-
-
-# --- work ---
-
-WORK_M = 192
-SEEDS = (1, 2, 3, 4, 5)
-
-
-def work_scene(kind: str, size: tuple[float, float], seed: int) -> rf.Scene:
-    """Return a rough plane, free or periodic, or a ball on one; the same load and nominal area on any
-    rectangle."""
-    plane = {"radius": None, "rms": 0.5e-6, "correlation_length": 60e-6}
-    ball = {"radius": 0.14, "rms": 0.3e-6, "load": 20.0}
-    given = ball if kind == "ball" else plane
-    return pressed(size=size, seed=seed, periodic=kind == "periodic", **given)
-
-
-def work(kind: str, ratio: float, oblong: float, seed: int) -> float:
-    """Return the work per element (transforms' ``n log2 n``) on a domain and with elements of those
-    ratios."""
-    side = 1.61e-3
-    size = (side * math.sqrt(ratio), side / math.sqrt(ratio))
-    share = math.sqrt(ratio / oblong)
-    grid = (round(WORK_M * share), round(WORK_M / share))
-    found = rf.solve(work_scene(kind, size, seed), grid)
-    if found.status not in cross_check.ENDED_WELL:
-        raise RuntimeError(f"{kind}, seed {seed}: ended {found.status.value} on {found.grid}")
-    return found.cost.point_logs / found.grid.elements
-
-
-def relative_work(settings: Sequence[tuple[float, float]]) -> dict[str, dict[str, float]]:
-    """Return the mean work over that of squares, by ratios and kind of scene."""
-    kinds = ("free", "periodic", "ball")
-    square = {kind: [work(kind, 1.0, 1.0, seed) for seed in SEEDS] for kind in kinds}
-    table = {}
-    for ratio, oblong in settings:
-        row = {
-            kind: float(np.mean([work(kind, ratio, oblong, s) for s in SEEDS]) / np.mean(square[kind]))
-            for kind in kinds
-        }
-        table[f"domain {ratio:g} : 1, elements {oblong:g} : 1"] = row | {
-            "mean": float(np.mean(list(row.values())))
-        }
-    return table
-
-
-@case("rectangles/work", metric="at_most", tolerance=1.2, tier="full")
-def work_on_rectangles() -> Measured:
-    """Work on rectangles over that on squares of as many elements.
-
-    Claim: rectangles to 4 : 1 and elements to 2 : 1 cost at most 1.2 times a square of as many elements
-    Source: transforms counted as n log2 n, from the solver's own counter
-    Tolerance: demanded; the mean over free and periodic rough planes and a rough ball, five surfaces each.
-    Single scenes scatter by 20 %, as squares of different seeds do
-    """
-    table = relative_work([(2, 1), (4, 1), (1, 1.5), (1, 2), (1, 0.5), (2, 2), (4, 2)])
-    worst = max(row["mean"] for row in table.values())
-    return Measured(worst, data={"work over a square's": table})

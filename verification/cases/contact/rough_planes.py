@@ -8,9 +8,10 @@ import numpy as np
 
 import refimpl as rf
 from verification.cases import Measured, case
-from verification.cases.contact.scenes import MODULUS, Array, centres, press
+from verification.cases.contact.scenes import MODULUS, Array, press
 from verification.exact import greenwood_tripp, rough_plane
 from verification.exact.greenwood_tripp import RoughSphere, gaussian_summits
+from verification.solver_suite.gaps import centres, waves
 
 STEEL, COPPER = rf.Material(E=200e9, nu=0.3), rf.Material(E=118e9, nu=0.3)
 RADIUS, LOAD, SIDE = 0.14, 70.0, 2e-3
@@ -53,34 +54,15 @@ def greenwood_tripp_radius() -> Measured:
     return Measured(float(np.mean(radii)), model.effective_radius, uncertainty, "m", data)
 
 
-def self_affine(M: int, seed: int, *, longest: int = 4, shortest: int = 16) -> Array:
-    """Return periodic random heights ``(M, M)``: flat spectrum to wave ``longest``, Hurst exponent 0.8 to
-    ``shortest``.
-
-    The same continuous surface on every grid for a given seed: random waves are drawn by frequency, not by
-    point.
-    """
-    rng = np.random.default_rng(seed)
-    k = np.arange(-shortest, shortest + 1)
-    wave = np.hypot(k[:, None], k[None, :])
-    envelope = np.where((wave > 0) & (wave <= shortest), np.maximum(wave, longest) ** -1.8, 0.0)
-    amplitude = envelope * (rng.standard_normal(wave.shape) + 1j * rng.standard_normal(wave.shape))
-    spectrum = np.zeros((M, M), dtype=complex)
-    spectrum[k[:, None] % M, k[None, :] % M] = amplitude
-    heights = np.fft.ifft2(spectrum).real
-    return np.asarray(heights / np.std(heights))
-
-
 LOADS = (0.02, 0.04, 0.08)
 """Mean pressure over E* times rms gradient."""
 
 
 def area_curves(M: int) -> Array:
-    """Return the perimeter-corrected contact fraction, shape ``(seeds, loads)``, of five self-affine
-    planes."""
+    """Return five self-affine planes' perimeter-corrected contact fractions ``(seeds, loads)``."""
     curves = []
     for seed in range(5):
-        heights = 1e-3 * self_affine(M, seed)
+        heights = 1e-3 * waves(M, seed, longest=4, shortest=16)
         slope = rough_plane.spectral_rms_gradient(heights, 1.0)
         gap = heights.max() - heights
 
@@ -113,17 +95,3 @@ def rough_plane_slope() -> Measured:
         "Persson": rough_plane.persson_area(LOADS),
     }
     return Measured(float(kappa[1]), (low + high) / 2, 0.0, "", data)
-
-
-@case("reference/rough-plane-doubling", metric="absolute", tolerance=0.1)
-def rough_plane_doubling() -> Measured:
-    """Rough plane: twice the load, nearly twice the area.
-
-    Claim: Roughness on all scales makes the area nearly proportional to the load, where one sphere has
-    2^(2/3)
-    Source: Archard 1957 (2/3, 8/9, 26/27, 1); Greenwood and Williamson 1966
-    Tolerance: between Archard's second level, 2^(8/9) = 1.85, and 2: centre 1.93; measured 1.93
-    """
-    areas = np.mean(area_curves(192), axis=0)
-    ratios = areas[1:] / areas[:-1]
-    return Measured(float(np.mean(ratios)), (2.0 + 2 ** (8 / 9)) / 2, 0.0, "", {"area ratio": ratios})

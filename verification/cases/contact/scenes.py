@@ -45,8 +45,7 @@ def press(
     periodic: bool = False,
     accept: Sequence[rf.Status] = (rf.Status.CONVERGED,),
 ) -> rf.Solution:
-    """Solve the gap (m) of ``(x, y)`` (m, from the middle) on ``M x M`` elements; slope terms are off
-    throughout.
+    """Solve the gap (m) of ``(x, y)`` (m, from the middle) on ``M x M`` elements without slope terms.
 
     Without ``friction`` the two bodies share the reduced modulus `MODULUS` evenly. Raises RuntimeError for
     a status that is not in ``accept``: a reference is compared with certified states only.
@@ -75,6 +74,5 @@ def measured_order(grids: Sequence[int], errors: Sequence[float], expected: floa
 
 
 def first_contact_approach(solution: rf.Solution, gap: Array) -> float:
-    """Return a periodic solution's approach from first contact (m); the solver counts from the mean
-    planes."""
+    """Return a periodic approach from first contact (m); solvers count from mean planes."""
     return solution.approach + float(np.mean(gap) - np.min(gap))

@@ -1,15 +1,11 @@
-"""Contact of self-affine surfaces: other codes on the same heights, and the area-load slope kappa over
-Nayak's parameter and the Hurst exponent.
+"""Contact of self-affine surfaces: other codes on the same heights, and the area-load slope kappa.
 
-``kappa = (A / A0) E* h' / p`` with h' the rms of |grad h|. Published:
-
-- Bush, Gibson and Thomas 1975: sqrt(2 pi) = 2.507 in the limit of vanishing area; Persson 2001: the secant of
-  ``erf(sqrt(2) p / (E* h'))``, from sqrt(8 / pi) = 1.596 down. Neither depends on the spectrum.
-- Simulations (`verification.exact.rough_plane`): 2.0 to 2.6. Prodanov, Dapp and Mueser 2014 (Tribol. Lett.
-  53, 433) find hardly any influence of the Hurst exponent; Yastrebov, Anciaux and Molinari 2017 (J. Mech.
-  Phys. Solids 107, 469) find, with areas corrected by the perimeter, that the area at a given pressure falls
-  with the logarithm of Nayak's parameter, and that the Hurst exponent enters by it; Mueser and Wang 2020
-  (Front. Mech. Eng. 6, 59) find no such correlation over other classes of surfaces.
+``kappa = (A / A0) E* h' / p``, h' the rms of |grad h|; `verification.exact.rough_plane` has published values.
+Theories do not depend on the spectrum. Of simulations, Prodanov, Dapp and Mueser 2014 (Tribol. Lett. 53, 433)
+find hardly any influence of the Hurst exponent; Yastrebov, Anciaux and Molinari 2017 (J. Mech. Phys. Solids
+107, 469) find that the perimeter-corrected area at a given pressure falls with the logarithm of Nayak's
+parameter, and that the Hurst exponent enters by it; Mueser and Wang 2020 (Front. Mech. Eng. 6, 59) find no
+such correlation over other classes of surfaces.
 """
 
 from __future__ import annotations
@@ -112,8 +108,7 @@ class Kappas:
 
 @cache
 def kappas() -> Kappas:
-    """Return the slopes at `PRESSURE`, of the perimeter-corrected area, by each realisation's own rms
-    gradient."""
+    """Return the slopes at `PRESSURE` of the corrected area, by each realisation's own rms gradient."""
     breadths, rows = [], []
     for hurst, ratio, waves in SPECTRA:
         longest = SIDE / waves

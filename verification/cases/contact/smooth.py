@@ -1,4 +1,4 @@
-"""Smooth indenters: Hertz' ellipse, Sneddon's cone, power laws, the rectangular patch."""
+"""Smooth indenters: Hertz' ellipse, Sneddon's cone, the rectangular patch."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 import refimpl as rf
 from refimpl.operators.fft import FFTInfluence
 from verification.cases import Measured, case, family
-from verification.cases.contact.scenes import MODULUS, Array, centres, measured_order, press
-from verification.exact.hertz import UNCERTAINTY as HERTZ_UNCERTAINTY
+from verification.cases.contact.scenes import MODULUS, Array, measured_order, press
 from verification.exact.hertz import Ellipse
 from verification.exact.patch import UNCERTAINTY as PATCH_UNCERTAINTY
 from verification.exact.patch import Patch
-from verification.exact.power_law import Cone, PowerLaw
+from verification.exact.power_law import Cone
+from verification.solver_suite.gaps import centres
 
 ELLIPSE = Ellipse(load=1.0, curvature_x=2.0, curvature_y=6.0, modulus=MODULUS)
 CONE = Cone(load=1.0, slope=0.05, modulus=MODULUS)
@@ -35,36 +35,6 @@ def press_ellipse(M: int) -> tuple[rf.Solution, Array, Array]:
     """Return the solution and element centres (m); the square is 2.4 semi-axes wide along the longer one."""
     side = 2.4 * ELLIPSE.semi_axes[0]
     return press(ellipsoid, side, M), *centres(side, M)
-
-
-def relative_l2(found: Array, exact: Array) -> float:
-    """Return the Euclidean norm of the difference over that of the exact array."""
-    return float(np.linalg.norm(found - exact) / np.linalg.norm(exact))
-
-
-@case("reference/hertz-ellipse-peak", metric="relative", tolerance=5e-4)
-def ellipse_peak() -> Measured:
-    """Elliptical Hertz contact: peak pressure.
-
-    Claim: A paraboloid of curvature ratio 3 has its Hertz peak pressure; swapped axes would not change it
-    Source: Johnson 1985, section 4.2; Carlson's R_D for K and E
-    Tolerance: order 2 with 4 h^2/a^2: 3.3e-4 measured at M = 96; 50 % on top
-    """
-    solution, _, _ = press_ellipse(96)
-    peak = ELLIPSE.peak_pressure
-    return Measured(solution.max_pressure, peak, peak * HERTZ_UNCERTAINTY, "Pa")
-
-
-@case("reference/hertz-ellipse-pressure", metric="at_most", tolerance=0.01)
-def ellipse_pressure() -> Measured:
-    """Elliptical Hertz contact: pressure element by element.
-
-    Claim: The long semi-axis lies along x, where the curvature is smaller; axes exchanged would miss by 60 %
-    Source: Johnson 1985, section 4.2
-    Tolerance: an edge element errs by sqrt(h), so the norm by h: 6.3e-3 measured at M = 96
-    """
-    solution, x, y = press_ellipse(96)
-    return Measured(relative_l2(solution.pressure, ELLIPSE.pressure(x, y)))
 
 
 def ellipse_error(M: int) -> float:
@@ -122,39 +92,6 @@ def press_cone(M: int) -> tuple[rf.Solution, Array]:
     side = 2.4 * CONE.contact_radius
     x, y = centres(side, M)
     return press(cone, side, M), np.hypot(x, y)
-
-
-@case("reference/cone-pressure", metric="at_most", tolerance=6e-3)
-def cone_pressure() -> Measured:
-    """Cone: pressure element by element.
-
-    Claim: The pressure is E* slope/2 arccosh(a/r), logarithmic at the tip
-    Source: Sneddon 1965; Johnson 1985, section 5.2
-    Tolerance: h (edge and tip alike): 3.9e-3 measured at M = 96
-    """
-    solution, r = press_cone(96)
-    return Measured(relative_l2(solution.pressure, CONE.pressure(r)))
-
-
-@case("reference/load-doubling", metric="at_most", tolerance=0.01)
-def load_doubling() -> Measured:
-    """Load doubling of power-law indenters.
-
-    Claim: Twice the load multiplies the area of r, r^2, r^4 by 2^(2/(n+1)) = 2, 1.587, 1.320
-    Source: Galin 1961; Sneddon 1965; Archard 1957 for the meaning
-    Tolerance: perimeter-corrected areas of 40 elements' radius scatter by some 0.3 % each
-    """
-    off = {}
-    for n in (1.0, 2.0, 4.0):
-        indenter = PowerLaw(load=2.0, coefficient=0.05, exponent=n, modulus=MODULUS)
-        side = 2.4 * indenter.contact_radius
-
-        def gap(x: Array, y: Array, n: float = n) -> Array:
-            return 0.05 * np.hypot(x, y) ** n
-
-        single, double = (press(gap, side, 96, load=P).contact_area_corrected for P in (1.0, 2.0))
-        off[f"r^{n:g}"] = abs(double / single / 2**indenter.area_exponent - 1)
-    return Measured(max(off.values()), data=off)
 
 
 @case("reference/patch-displacement", metric="at_most", tolerance=2e-13)

@@ -1,6 +1,4 @@
-"""Periodic waviness from light to full contact: Westergaard, Johnson-Greenwood-Higginson, and a rough plane
-in full contact.
-"""
+"""Periodic waviness to full contact: Westergaard, Johnson-Greenwood-Higginson, and a rough plane."""
 
 from __future__ import annotations
 
@@ -9,17 +7,10 @@ import numpy as np
 import refimpl as rf
 from refimpl.model.friction import is_frictionless
 from verification.cases import Measured, case
-from verification.cases.contact.scenes import (
-    COUPLING,
-    MODULUS,
-    Array,
-    centres,
-    first_contact_approach,
-    measured_order,
-    press,
-)
-from verification.exact import fourier, jgh, westergaard
+from verification.cases.contact.scenes import COUPLING, MODULUS, Array, first_contact_approach, press
+from verification.exact import fourier, jgh
 from verification.exact.westergaard import Wave
+from verification.solver_suite.gaps import centres
 
 AMPLITUDE, WAVELENGTH = 1e-3, 1.0
 GRIDS = (32, 48, 64, 96, 128)
@@ -37,8 +28,7 @@ def egg_box(x: Array, y: Array) -> Array:
 
 
 def press_ridge(share: float, M: int) -> tuple[Wave, rf.Solution, Array]:
-    """Return the exact wave at ``share`` of p*, the solver's answer, and the exact pressure ``(M, M)``
-    (Pa)."""
+    """Return the exact wave at ``share`` of p*, the answer, and the exact pressure ``(M, M)`` (Pa)."""
     star = Wave(1.0, AMPLITUDE, WAVELENGTH, MODULUS).full_contact_pressure
     wave = Wave(share * star, AMPLITUDE, WAVELENGTH, MODULUS)
     solution = press(ridge, WAVELENGTH, M, load=share * star * WAVELENGTH**2, periodic=True)
@@ -49,50 +39,6 @@ def press_ridge(share: float, M: int) -> tuple[Wave, rf.Solution, Array]:
 def touch(solution: rf.Solution, gap: Array) -> float:
     """Return the approach from the crest itself (m), which lies between element centres."""
     return first_contact_approach(solution, gap) + float(gap.min())
-
-
-@case("reference/westergaard-pressure", metric="at_most", tolerance=3e-3)
-def westergaard_pressure() -> Measured:
-    """One-dimensional wave in partial contact: pressure.
-
-    Claim: At half the full-contact load the pressure is Westergaard's
-    Source: Westergaard 1939; Johnson 1985, Eq. (13.7)
-    Tolerance: square-root edges: order 1, 1.9e-3 measured at M = 128
-    """
-    _, solution, exact = press_ridge(0.5, 128)
-    worst = float(np.linalg.norm(solution.pressure - exact) / np.linalg.norm(exact))
-    return Measured(worst, reference_uncertainty=westergaard.UNCERTAINTY)
-
-
-@case("reference/westergaard-area", metric="at_most", tolerance=2 / 128)
-def westergaard_area() -> Measured:
-    """One-dimensional wave: contact fraction against load.
-
-    Claim: Mean pressure = p* sin^2(pi a/lambda) from a tenth to nine tenths of full contact
-    Source: Johnson 1985, Eq. (13.8)
-    Tolerance: whole elements: each of the two edges is placed to one element of 1/128
-    """
-    off = {}
-    for share in (0.1, 0.3, 0.5, 0.7, 0.9):
-        wave, solution, _ = press_ridge(share, 128)
-        off[f"{share:g} p*"] = abs(solution.contact_area / WAVELENGTH**2 - wave.contact_fraction)
-    return Measured(max(off.values()), data=off)
-
-
-@case("reference/westergaard-approach-order", metric="absolute", tolerance=0.1)
-def westergaard_order() -> Measured:
-    """One-dimensional wave: order of the approach.
-
-    Claim: With the edge on element borders the approach of the mean planes converges with order 2
-    Source: approach integrated from Johnson's flat-punch increment: Delta s^2 (1 - ln s^2)
-    Tolerance: at half load the edges fall on borders for every M divisible by 4: clean order, measured 2.04
-    """
-    errors = []
-    for M in GRIDS:
-        wave, solution, _ = press_ridge(0.5, M)
-        gap = ridge(*centres(WAVELENGTH, M)) * np.ones((M, M))
-        errors.append(abs(touch(solution, gap) / wave.approach - 1))
-    return measured_order(GRIDS, errors, 2.0)
 
 
 @case("reference/westergaard-full", metric="at_most", tolerance=1e-12)

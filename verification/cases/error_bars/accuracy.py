@@ -1,10 +1,8 @@
-"""`accuracy=`, error bars and derivatives: bars against Hertz and finer grids, similarity of derivatives."""
+"""`accuracy=`, error bars and derivatives: bars against Hertz, similarity of derivatives."""
 
 from __future__ import annotations
 
 import math
-import tempfile
-from pathlib import Path
 
 import numpy as np
 
@@ -14,18 +12,14 @@ from refimpl.solution.quantities import error_bound
 from verification.cases import Measured, case
 from verification.cases.contact import hertz
 from verification.cases.contact.hertz import mean_radii
-from verification.coverage.judge import coverages
-from verification.coverage.store import NUMBERS, refine, refinements
 from verification.exact.hertz import UNCERTAINTY, Sphere
 
 SCENE = rf.read_scene("hertz")
 EXACT = Sphere(load=SCENE.load, radius=0.14, modulus=SCENE.materials.reduced_modulus)
-SEEDS, GRIDS = range(24), (32, 64, 96, 128, 192, 256, 512)
 
 
 def _moved(position: int) -> rf.Scene:
-    """Return the scene with the ball below, slid by up to an element of 32 x 32; position 0 is the scene
-    itself."""
+    """Return the scene with the ball below, slid by up to an element of 32 x 32; 0 is the scene itself."""
     if position == 0:
         return SCENE
     direction, share = np.random.default_rng(position).uniform(0, 1, 2)
@@ -121,26 +115,3 @@ def stress_similarity() -> Measured:
         for number, power in powers.items()
     }
     return Measured(value=max(misfits.values()), data={"misfit": misfits})
-
-
-@case("accuracy/coverage", metric="at_least", tolerance=0.92, tier="full")
-def coverage() -> Measured:
-    """Bars of accuracy=0.01 on random scenes.
-
-    Claim: the true error of mu, A, corrected A and f_max lies inside the 95 % bar
-    Source: grids twice as fine as any requested
-    Tolerance: what a perfect 95 % bar passes with 97 % probability on 200 scenes
-    """
-    with tempfile.TemporaryDirectory() as folder:
-        store = Path(folder) / "store.jsonl"
-        refine(store, SEEDS, GRIDS)
-        found = coverages(refinements(store), 0.01)
-    shares = {
-        number: sum(v.covered for v in found if v.number == number) / sum(v.number == number for v in found)
-        for number in NUMBERS
-    }
-    return Measured(
-        value=sum(verdict.covered for verdict in found) / len(found),
-        data={"share": shares},
-        note=f"{len(SEEDS)} scenes, reference {GRIDS[-1]} x {GRIDS[-1]}",
-    )

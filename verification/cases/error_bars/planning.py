@@ -8,14 +8,11 @@ from dataclasses import replace
 from functools import cache
 
 import refimpl as rf
-from refimpl.driver.options import Options
 from refimpl.model.problem import Terms
 from refimpl.operators.fft import Counter
-from refimpl.planning.terms import LABELS
 from refimpl.scene.discretise import discretise
 from refimpl.solvers.production.nested_solver import solve_fft
 from verification.cases import Measured, case
-from verification.cli.explain import explained
 
 SOURCE = "the planner's own promise (README): what a scene does not require is neither built nor applied"
 BARE = Terms(coupled=False, oblique=False, tilted=False)
@@ -25,8 +22,7 @@ RETURNED = 4 * 8  # bytes per element: both deformed surfaces, gap and indentati
 
 @cache
 def scenes() -> dict[str, tuple[rf.Scene, bool | None]]:
-    """Return the scenes that require normal contact alone, and ``oblique`` where the scene does not say
-    so."""
+    """Return the scenes that require normal contact alone, and ``oblique`` unless the scene says so."""
     hertz, table1 = rf.read_scene("hertz"), rf.read_scene("table1-smooth")
     twins = replace(table1, lower=rf.Body(table1.upper.material, table1.lower.surface))
     incompressible = rf.Material(E=10e6, nu=0.5)
@@ -55,8 +51,7 @@ def bare(scene: rf.Scene) -> Counter:
 
 
 def peak(run: Callable[[], object]) -> float:
-    """Return the peak of Python's and numpy's memory (bytes per element) in a second run: kernels are
-    tabulated once."""
+    """Return the peak memory (bytes per element) of a second run: kernels are tabulated once."""
     run()
     tracemalloc.start()
     try:
@@ -129,25 +124,3 @@ def memory() -> Measured:
     whole = peak(lambda: rf.solve(replace(scene, friction=rf.Friction(15e6, 0.08)), M))
     data = {"bytes per element": {"bare": alone, "planned": planned, "with friction": whole}}
     return Measured(planned / (alone + RETURNED), data=data)
-
-
-@case("planning/explained", metric="equal", tolerance=0.0, source=SOURCE)
-def explanation() -> Measured:
-    """--explain says so.
-
-    Claim: for a frictionless smooth scene and for identical materials without slope terms the printed plan
-    has every term out
-    Tolerance: lines are counted
-    """
-    missing = []
-    for name in ("frictionless, smooth", "identical materials, no slopes"):
-        scene, oblique = scenes()[name]
-        options = Options(scene=scene, grid=M, requested=Terms(oblique=oblique))
-        text = explained(options, options.plan(), name)
-        rows = {line.strip() for line in text.splitlines()}
-        missing += [
-            f"{name}: {term}"
-            for term in LABELS.values()
-            if not any(row.startswith(term) and row.removeprefix(term).split()[0] == "out" for row in rows)
-        ]
-    return Measured(len(missing), 0.0, note="; ".join(missing))

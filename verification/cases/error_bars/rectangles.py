@@ -40,8 +40,7 @@ def on_oblong_elements(seed: int) -> tuple[rf.Scene, list[tuple[int, int]]]:
 
 
 def covered(*, oblong: bool) -> tuple[Mapping[str, float], int]:
-    """Return the share of scenes whose bar on three grids covers the finest grid's number; the number of
-    scenes."""
+    """Return the share of scenes whose bar on three grids covers the finest number; and their number."""
     held = dict.fromkeys(NUMBERS, 0)
     bounded = dict.fromkeys(NUMBERS, 0)
     solved = 0

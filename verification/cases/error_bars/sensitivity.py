@@ -33,8 +33,7 @@ DRAWS, DRAWN_M = 64, 192
 
 
 def _unit(number: str, scene: rf.Scene, found: Sensitivity, parameter: str) -> float:
-    """Return what a derivative is multiplied by to be one of logarithms; of Q, which may vanish, over the
-    load."""
+    """Return what makes a derivative one of logarithms; of Q, which may vanish, over the load."""
     whole = scene.load if number == "binormal_force" else found.found[number]
     return found.parameters[parameter] / whole
 
@@ -45,16 +44,14 @@ def _by_number(off: Sequence[tuple[str, float]]) -> dict[str, list[float]]:
 
 
 def _at_the_edge(solution: rf.Solution, number: str, excess: float) -> float:
-    """Return a number of a solution; mu without tau on a given ``excess`` (m^2), whose own change is the
-    area's."""
+    """Return a solution's number; mu without tau on an ``excess`` (m^2), whose change is the area's."""
     if number != MU:
         return float(getattr(solution, number))
     return solution.friction_coefficient - solution.details.features.dmu_dA * excess
 
 
 def _differences(seed: int) -> tuple[list[tuple[str, float]], int]:
-    """Return the number and difference of each smooth derivative of a scene from central differences of full
-    solves.
+    """Return the number and difference of smooth derivatives from central ones of full solves.
 
     Differences are in per cents for one per cent of the parameter, Q's over the load. The second number
     counts the parameters that changed the contact.
@@ -107,8 +104,7 @@ def finite_differences() -> Measured:
 
 
 def _fine_derivatives(scene: rf.Scene, name: str, value: float) -> dict[str, tuple[float, float]]:
-    """Return each number's derivative on the fine grid and its standard error: a parabola through small
-    steps."""
+    """Return derivatives on the fine grid and standard errors: parabolas through small steps."""
     solutions = [rf.solve(with_parameter(scene, name, value * (1 + step)), FINE) for step in SMALL]
     found = {}
     for number in NUMBERS:
@@ -119,8 +115,7 @@ def _fine_derivatives(scene: rf.Scene, name: str, value: float) -> dict[str, tup
 
 
 def _covered(seed: int) -> list[tuple[str, bool, float, float]]:
-    """Return the number, whether the bar covers, error and bar (per cents for one per cent) of derivatives of
-    a scene.
+    """Return number, whether the bar covers, error and bar (per cents for one per cent) of derivatives.
 
     By the load, tau, a modulus, and a height or radius. Two standard errors of the fine derivative are added.
     """

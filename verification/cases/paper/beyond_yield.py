@@ -42,7 +42,6 @@ def _series(tier: str) -> dict[str, object]:
 
 
 def _over(tier: str, name: str, by_load: dict[float, list[float]]) -> dict[str, object]:
-    """Return one series per load over sigma_e and psi."""
     first = _by_load(tier)[LOADS[0]]
     data: dict[str, object] = {"sigma_e (um)": [p.rms * 1e6 for p in first], "psi": [p.psi for p in first]}
     return data | {f"{name}, {load:g} N": values for load, values in by_load.items()}

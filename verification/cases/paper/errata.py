@@ -13,8 +13,7 @@ from verification.reproduction import errata as body
 
 
 def _judged(erratum: body.Erratum | appendix.Erratum, least: float, **more: str) -> Measured:
-    """Return the corrected form's error; ArithmeticError where the printed one's is below ``least``
-    tolerances."""
+    """Return the corrected form's error; ArithmeticError if the printed one's is not ``least`` tolerances."""
     against, remains = erratum.evidence(), erratum.check()
     if not against > least * erratum.tolerance:
         raise ArithmeticError(f"the printed form misses by {against:.3g} only: no erratum")

@@ -46,7 +46,6 @@ def binormal(tier: str) -> Measured:
 
 
 def _largest_transverse(rows: Sequence[Row]) -> tuple[float, int]:
-    """Return the largest |Q| / P on the roughest flats, and the number of solutions."""
     finest = max(row["grid"] for row in rows)
     roughest = [row for row in rows if row["lower_rms"] == FLAT_RMS[1] and row["grid"] == finest]
     return max(abs(row["binormal_force"]) / SMOOTH.load for row in roughest), len(roughest)

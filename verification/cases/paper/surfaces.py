@@ -100,8 +100,7 @@ def largest(tier: str) -> Measured:
 
 
 def _component_slope(h: float) -> float:
-    """Return the rms of central differences over 2 h on Eq. (9) of unit rms: ``sqrt((R(0) - R(2 h)) / 2) /
-    h`` (1/m)."""
+    """Return rms central differences (1/m) of Eq. (9): ``sqrt((R(0) - R(2 h)) / 2) / h``."""
     return math.sqrt(-math.expm1(-2.3 * (2 * h / CORRELATION_LENGTH) ** 2) / 2) / h
 
 

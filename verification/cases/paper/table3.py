@@ -1,7 +1,4 @@
-"""Table 3 again, twelve columns, and what its ensemble says of the scatter and of Eqs (10) and (11).
-
-75 realisations; in the quick tier six, on the coarsest mesh.
-"""
+"""Table 3 anew, its scatter, and Eqs (10) and (11): 75 realisations; quick: six, on the coarsest mesh."""
 
 from __future__ import annotations
 

@@ -34,8 +34,7 @@ def offset() -> Array:
 
 
 def centroid(pressure: Array, direction: float) -> tuple[float, float]:
-    """Return the centroid of the pressure from the sphere's axis, along and across the sliding direction
-    (m)."""
+    """Return the pressure's centroid from the sphere's axis, along and across sliding (m)."""
     x = float(np.sum(pressure * offset()[:, None]) / pressure.sum())
     y = float(np.sum(pressure * offset()[None, :]) / pressure.sum())
     cos, sin = math.cos(direction), math.sin(direction)

@@ -79,10 +79,7 @@ def _mu(solver: LevelSolver) -> float:
 
 
 def _solver(solution: rf.Solution) -> Callable[[Array, Array], LevelSolver]:
-    """Return the production solver on the solution's whole grid, from a pressure and with shares of tau.
-
-    The function returned raises RuntimeError where the solver does not converge.
-    """
+    """Return the production solver from a pressure, with shares of tau; RuntimeError if unconverged."""
     problem, tau = solution.details.problem, solution.details.friction.jump
     operator = window_influence(problem.grid, problem.direction)
     spectral = SpectralPreconditioner(operator, problem.elasticity.symbol(operator.symbol))

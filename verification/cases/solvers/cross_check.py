@@ -50,8 +50,7 @@ def pressure_difference(trial: Trial) -> float:
 
 
 def approach_difference(trial: Trial) -> float:
-    """Return the difference of the approaches, relative and from first contact, where a periodic one is never
-    zero."""
+    """Return the relative difference of approaches from first contact: never over zero."""
     dense, fft = trial.dense, trial.fft
     return abs(dense.approach - fft.approach) / abs(dense.approach + dense.details.problem.datum)
 

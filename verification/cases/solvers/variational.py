@@ -39,8 +39,7 @@ _STEPS = 20_000  # at most, of L-BFGS-B
 
 
 def table2_scene() -> rf.Scene:
-    """Return Table 2's contact as far as the paper tells it: "a half-space and a sphere with a rough
-    surface".
+    """Return Table 2's contact as the paper has it: "a half-space and a sphere with a rough surface".
 
     Sphere, moduli, load and side are those of Table 1, the roughness is the only one that the paper gives
     its sphere, 0.084 um; the half-space is smooth, and there is no friction ("static contact").
@@ -115,10 +114,7 @@ class Energy:
 
 
 def least_squares(energy: Energy) -> Array:
-    """Minimise ``|L^T x - L^-1 depth|`` over ``x >= 0`` with ``A = L L^T``: V* up to a constant.
-
-    By active sets (Lawson and Hanson 1974). Raises RuntimeError when the exchanges do not end.
-    """
+    """Minimise V* by active sets (Lawson and Hanson 1974), ``A = L L^T``; RuntimeError if unending."""
     factor = cholesky(energy.matrix(), lower=True, overwrite_a=True, check_finite=False)
     right = solve_triangular(factor, energy.depth, lower=True, check_finite=False)
     x: Array = nnls(factor.T, right, maxiter=10 * len(right))[0]
@@ -126,10 +122,7 @@ def least_squares(energy: Energy) -> Array:
 
 
 def quasi_newton(energy: Energy) -> Array:
-    """Minimise V* by L-BFGS-B (Byrd, Lu, Nocedal and Zhu 1995) with products by FFT.
-
-    The first guess is the depth at its best scale. Raises RuntimeError when the gradient is not met.
-    """
+    """Minimise V* by L-BFGS-B (Byrd, Lu, Nocedal and Zhu 1995); RuntimeError where the gradient stays."""
 
     def value_and_gradient(x: Array) -> tuple[float, Array]:
         displacement = energy.apply(x)

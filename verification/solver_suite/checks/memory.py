@@ -54,9 +54,7 @@ def loads(gap: Array, other: Array, **how: Any) -> Judge:
 
 
 def approaches(gap: Array, lightly: float, well: float, **how: Any) -> Judge:
-    """Pose a gap at two approaches, the second at three times the modulus, and at twice the spacing too; and
-    the first again.
-    """
+    """Pose a gap at two approaches, the second at 3 E*, then at twice the spacing; the first again."""
     first, deeper = pressing(gap, deep=lightly, **how), how | {"deep": well}
     stiff, spread = pressing(gap, modulus=STIFF, **deeper), pressing(gap, 2.0, modulus=STIFF, **deeper)
     return in_turn(first, pressing(gap, **deeper), stiff, spread, first)

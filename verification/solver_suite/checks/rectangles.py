@@ -29,8 +29,7 @@ LOAD, LIGHT = 0.03 * MODULUS, 0.01 * MODULUS
 
 
 def bump(rows: int, columns: int, seed: int) -> Array:
-    """Return a rough bump (m) on a part of the unit square: ``rows`` of 48 elements along x, and so along
-    y."""
+    """Return a rough bump (m) on a part of the unit square: ``rows`` of 48 elements along x, so along y."""
     i, j = (48 - rows) // 2, (48 - columns) // 2
     return rough_bump(48, seed)[i : i + rows, j : j + columns]
 

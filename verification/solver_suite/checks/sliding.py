@@ -49,8 +49,7 @@ IN_PERIODS = (F.APERIODIC_FOR_PERIODIC, F.TAU_BESIDE, F.TAU_ALONG_X, F.SIGN_OF_C
 
 
 def centroid(pressed: Pressed, x: Array) -> float:
-    """Return the pressure-weighted mean of ``x`` (m). Raises ValueError where there is no load to carry
-    it."""
+    """Return the pressure-weighted mean of ``x`` (m). Raises ValueError without a load."""
     if not pressed.load > 0:
         raise ValueError(f"the pressures carry {pressed.load:.3g} N: no centroid")
     return float(np.sum(pressed.pressure * x) / pressed.pressure.sum())
@@ -65,8 +64,7 @@ def _trailing_shift(entrant: Entrant) -> Measured:
 
 
 def coupled_hertz(entrant: Entrant, n: int, tau: float) -> tuple[Array, Array]:
-    """Return the pressures found and exact of a sliding state that is Hertz'; ``tau`` is a share of the
-    peak."""
+    """Return found and exact pressures of a sliding Hertz state; ``tau`` is a share of the peak."""
     side, direction = 2.6 * SPHERE.contact_radius, 2.5
     state = CoupledHertz(SPHERE, COMPLIANCE, tau=tau * SPHERE.peak_pressure, beta=0.8)
     x, y = centres(side, n)

@@ -34,7 +34,6 @@ class Faulty:
     abilities = own.solve.abilities
 
     def __call__(self, problem: ContactProblem) -> Answer:
-        """Return what the faulty solver found; no number where nothing is in contact."""
         pressure = self.solver(problem)
         if self.number is None or not pressure.any():
             return Answer(pressure, True)
@@ -62,8 +61,6 @@ def periodic(problem: ContactProblem) -> ContactProblem:
 
 
 def _coupled(change: Callable[[Coupling], Coupling]) -> Solver:
-    """Return a solver with other friction, where there is any."""
-
     def changed(problem: ContactProblem) -> ContactProblem:
         return problem if problem.coupling is None else replace(problem, coupling=change(problem.coupling))
 
@@ -129,8 +126,6 @@ def patched(*patches: tuple[Any, str, Any]) -> Iterator[None]:
 
 
 def _inside(*patches: tuple[Any, str, Any]) -> Solver:
-    """Return a solver with faults in the code of `refimpl`."""
-
     def solver(problem: ContactProblem) -> Array:
         with patched(*patches):
             return right(problem)

@@ -95,8 +95,7 @@ def certified(problem: ContactProblem) -> Certified:
 
 
 def _apart(problem: ContactProblem) -> Bounds:
-    """Return the bounds without contact: the pressures are exact: no element penetrates, and the solution is
-    unique."""
+    """Return the bounds without contact: pressures are exact, no element penetrates, one solution."""
     touch = problem.approach_from_touch
     if touch is None or touch > 0:
         raise NotCertified("the solver found no contact")

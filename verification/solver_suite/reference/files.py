@@ -46,10 +46,7 @@ SUMS, INDEX, CITATION = "SHA256SUMS", "index.json", "CITATION.cff"
 
 
 class Export:
-    """A new folder of reference data, which appears when it is complete.
-
-    Raises `InputError` for a path that exists and is no empty directory, or whose parent is no directory.
-    """
+    """A new folder of reference data, whole at once. `InputError` for a used path, or without a parent."""
 
     def __init__(self, folder: Path) -> None:
         if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
@@ -175,5 +172,4 @@ def licence() -> str:
 
 
 def _text(name: str) -> str:
-    """Return the text of the folder that is filled in."""
     return (HERE / "texts" / name).read_text(encoding="utf-8")

@@ -35,8 +35,7 @@ ROUNDING = 8.0
 
 
 class PeriodicBound(NamedTuple):
-    """``sum e0 a e0 dA`` (J), largest errors of a pressure (Pa) and of the load (N), and the elements in and
-    out of contact."""
+    """``sum e0 a e0 dA`` (J), largest errors of pressure (Pa) and load (N), elements in and out."""
 
     energy: float
     pressure: float
@@ -46,8 +45,7 @@ class PeriodicBound(NamedTuple):
 
 
 def periodic_bound(problem: ContactProblem, solution: rf.Solution) -> PeriodicBound | None:
-    """Return the bounds of a solution at a periodic approach, at its active set of tau; None where none is
-    proven."""
+    """Return the bounds at a periodic approach, at its active set of tau; None if not proven."""
     f, touch = np.asarray(solution.pressure), problem.approach_from_touch
     if touch is None or problem.approach is None or not problem.periodic or problem.hardness is not None:
         return None
@@ -94,5 +92,4 @@ class _Symbols:
 
 
 def _rounding(v: Array, touch: float) -> float:
-    """Return the rounding of one element's v (m)."""
     return ROUNDING * float(np.finfo(float).eps) * (math.log2(v.size) * float(np.linalg.norm(v)) + abs(touch))

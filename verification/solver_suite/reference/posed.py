@@ -35,11 +35,7 @@ class _Recorder:
 
 
 def problems(globs: Iterable[str] = (), largest: int = LARGEST) -> Iterator[PosedProblem]:
-    """Yield the problems of the cases that match ``globs`` (all without any), in the order of the suite.
-
-    A problem that an earlier case has posed is left to that case. Raises LookupError for a glob that matches
-    no case.
-    """
+    """Yield the problems of cases of ``globs`` (or all), each once. LookupError where a glob has none."""
     seen: set[tuple[object, ...]] = set()
     for case in select(globs):
         recorder = _Recorder(replace(own.solve.abilities, largest=largest))

@@ -32,8 +32,7 @@ def scene(seed: int) -> rf.Scene:
 
 
 def entry(seed: int, method: Literal["dense", "fft"] = "dense") -> dict[str, Any]:
-    """Return the problem and answer: heights (m, upwards), pressure and traction (Pa), the mask of tau,
-    numbers (SI).
+    """Return problem and answer: heights (m, upwards), p and traction (Pa), mask of tau, numbers (SI).
 
     Row i along x, the direction of sliding of the upper body, column j along y.
     """

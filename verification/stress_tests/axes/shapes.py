@@ -61,8 +61,7 @@ def steep(slope: float) -> Array:
 
 
 def shapes() -> Iterator[Extreme]:
-    """Yield lines, aspects, slopes and hardness by the dense solver; the others, of both solvers, by the
-    oracle."""
+    """Yield lines, aspects, slopes, hardness by the dense solver; others, of both solvers, by the oracle."""
     heights = [
         *(("line", f"{m} x {n}", n / m, 1e-7 * noise(m, n), 1e-4, SIDE * n / m) for m, n in LINES),
         *(("aspect", f"{aspect:g}", aspect, 1e-7 * noise(6, 6), 1e-4, SIDE * aspect) for aspect in ASPECTS),

@@ -17,7 +17,7 @@ import refimpl as rf
 from refimpl.planning.plan import Method
 from refimpl.solution.quantities import error_bound
 from verification.scenes.cross_checks import COPPER, STEEL
-from verification.stress_tests.judge import caught, verdict
+from verification.stress_tests.judge import tested, verdict
 from verification.stress_tests.state import Extreme, Judged
 
 TOLERANCE = 1e-12
@@ -91,12 +91,11 @@ def change(
     return found[worst], f"worst in {worst}"
 
 
-@caught
 def run(method: Method, periodic: bool, length: float, stress: float, similar: float, limit: float) -> Judged:
     """Solve the scaled scene and compare."""
     oblique = similar == 1.0
     base = unscaled(method, periodic, oblique)
-    scaled = solved(method, periodic, oblique, length, stress, similar)
+    scaled = tested(solved, method, periodic, oblique, length, stress, similar)
     # powers of ten round what a bar's root is sought from, and it is found to 1e-4
     error, note = change(scaled, base, length, stress, similar, bars=limit == 0)
     return verdict(scaled, error, "the scaling law", note, limit)

@@ -18,13 +18,7 @@ from refimpl.operators.fft import Counter
 from refimpl.operators.influence import window_influence
 from refimpl.operators.preconditioner import Apply
 from refimpl.solvers.production import constants, lagged_terms
-from refimpl.solvers.production.lagged_terms import (
-    LaggedTerms,
-    couples_weakly,
-    coupling_strength,
-    pressure_compliance,
-)
-from refimpl.solvers.production.projected_cg import ProjectedCG
+from refimpl.solvers.production.lagged_terms import couples_weakly, coupling_strength, pressure_compliance
 from refimpl.solvers.tau_active_set import FixedSet
 from tests.refimpl.solvers.production.levels import BALL, coupled, level_solver, problem_of
 from verification.exact.dense_influence import DenseInfluence
@@ -57,19 +51,6 @@ def compliance(problem: Problem) -> tuple[Apply, Counter]:
     return pressure_compliance(problem, operator), counter
 
 
-def lagging(problem: Problem, pressure: Array) -> tuple[LaggedTerms, ProjectedCG, Counter]:
-    """The lagged terms of a problem at a pressure; displacements are not preconditioned."""
-    counter = Counter()
-    operator = window_influence(problem.grid, problem.direction, counter=counter)
-    cg = ProjectedCG(pressure_compliance(problem, operator), np.copy, pressure)
-    return LaggedTerms(problem, operator, cg), cg, counter
-
-
-def displacement(problem: Problem, lagged: LaggedTerms, cg: ProjectedCG) -> Array:
-    """``u = (v - h) cos theta_x cos theta_y``: what CG inverts and what lags, together."""
-    return (cg.separation - problem.gap) * lagged.slopes.cosine_product
-
-
 @pytest.mark.parametrize("periodic", [False, True])
 @pytest.mark.parametrize("strength", [0.0, 0.1, 0.3, 0.5])
 def test_weak_coupling_is_applied_with_the_pressure(strength: float, periodic: bool) -> None:
@@ -96,45 +77,6 @@ def test_neglected_coupling_has_no_strength(slope_correction: bool, strength: fl
 def test_facet_tractions_are_no_multiple_of_the_pressure() -> None:
     assert couples_weakly(turned(0.2, oblique=True))
     assert not couples_weakly(turned(0.2, oblique=True, slope_correction=True))
-
-
-@pytest.mark.parametrize("periodic", [False, True])
-@pytest.mark.parametrize("oblique", [False, True])
-@pytest.mark.parametrize("tau", [0.0, 1e6])
-@pytest.mark.parametrize("weak", [0.3, 0.0])
-def test_what_is_inverted_and_what_lags_add_up_to_the_same(
-    weak: float, tau: float, oblique: bool, periodic: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """To the displacement of Eq. (7) and to the slopes, however the shear is shared out."""
-    monkeypatch.setattr(lagged_terms, "WEAK_COUPLING", weak)
-    problem = turned(0.2, tau, oblique=oblique, periodic=periodic)
-    pressure, active = pressed(2), pressed(3) > 0
-    lagged, cg, _ = lagging(problem, pressure)
-    lagged.active = FixedSet(active)
-    lagged.update()
-    assert couples_weakly(problem) is (weak > 0)
-    dense = DenseInfluence(problem.grid, problem.direction)
-    traction = problem.friction.traction(pressure, active)
-    lower, upper = problem.displacements(dense, pressure, traction, Slopes.flat((M, M)))
-    expected = problem.slopes(lower, upper)
-    bound = ROUNDING * np.abs(lower + upper).max()
-    found = displacement(problem, lagged, cg)
-    # the gap, up to a hundred times the displacement, is added and subtracted again
-    assert np.abs(found - (lower + upper)).max() <= bound + 1e-15 * problem.gap.max()
-    # differences of displacements over two spacings
-    assert np.abs(lagged.slopes.tan_x - expected.tan_x).max() <= bound / problem.grid.element_size
-    assert np.abs(lagged.slopes.tan_y - expected.tan_y).max() <= bound / problem.grid.element_size
-    assert np.array_equal(lagged.traction, traction)
-
-
-def test_without_pressure_nothing_is_sheared() -> None:
-    problem = turned(0.2, 1e6, oblique=True)
-    lagged, cg, _ = lagging(problem, np.zeros((M, M)))
-    lagged.active = FixedSet(np.zeros((M, M), dtype=bool))
-    for _ in range(2):
-        lagged.update()
-        assert np.array_equal(displacement(problem, lagged, cg), np.zeros((M, M)))
-        assert np.isfinite(lagged.slopes.tan_x).all()
 
 
 @pytest.mark.parametrize("tau", [0.0, 1e6])

@@ -41,8 +41,7 @@ from verification.exact.exact_operators import normal, tangential
 
 
 def symmetric_part(M: int, beta: float, ratio: float, slope: float = 0.0) -> Array:
-    """Return the eigenvalues of the symmetric part of ``a (1 - beta t) + ratio beta c`` on M x M unit
-    elements.
+    """Return the symmetric part's eigenvalues of ``a (1 - beta t) + ratio beta c``, M x M.
 
     ``ratio`` is the shear over the normal compliance; ``slope`` is t = tan theta_x of alternate rows of
     elements, of either sign, as the slope correction sees it (0 without it). Entries are the exact ones,
