@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import refimpl as rf
 from refimpl.accuracy import discretisation_error
 from refimpl.accuracy.discretisation_error import APPROACH_SCATTER, PEAK_BIAS, PEAK_BIAS_SPREAD, estimates
 from refimpl.accuracy.peak import NO_PEAK, Peak, deepest
