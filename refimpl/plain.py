@@ -187,22 +187,10 @@ class Model(SimpleNamespace):
 
 
 def solve(
-    z_lower: Array,
-    z_upper: Array,
-    lengths: tuple[float, float],
-    lower: tuple[float, float],
-    upper: tuple[float, float],
-    tau: float,
-    beta: float,
-    *,
-    load: float | None = None,
-    approach: float | None = None,
-    direction: float = 0.0,
-    hardness: float = np.inf,
-    softer: str | None = None,
-    periodic: bool = False,
-    slopes: bool = True,
-    facets: bool = False,
+    z_lower: Array, z_upper: Array, lengths: tuple[float, float], lower: tuple[float, float],
+    upper: tuple[float, float], tau: float, beta: float, *, load: float | None = None,
+    approach: float | None = None, direction: float = 0.0, hardness: float = np.inf,
+    softer: str | None = None, periodic: bool = False, slopes: bool = True, facets: bool = False,
 ) -> SimpleNamespace:
     """Return the solution for heights (m, Mx by My) on a domain of ``lengths`` (m), bodies (E, nu) (Pa, -).
 
@@ -243,14 +231,8 @@ def solve(
     arrays = {"pressure": model.f, "traction": model.q + beta * model.f, "active": active & contact}
     return SimpleNamespace(
         **{name: array.reshape(shape) for name, array in arrays.items()},
-        approach=model.delta - model.datum,
-        normal=N,
-        friction=F,
-        transverse=Q,
-        mu=F / (load or N) if N else np.nan,
-        p_max=model.f.max(),
-        area=contact.sum() * model.dA,
+        approach=model.delta - model.datum, normal=N, friction=F, transverse=Q,
+        mu=F / (load or N) if N else np.nan, p_max=model.f.max(), area=contact.sum() * model.dA,
         plastic_area=(model.part == PLASTIC).sum() * model.dA,
-        tangents=model.tan.reshape(2, *shape),
-        ended=model.ended,
+        tangents=model.tan.reshape(2, *shape), ended=model.ended,
     )
