@@ -41,6 +41,19 @@ def edge_faces(pressure: Array, clearance: Array, grid: Grid) -> tuple[float, ..
     return tuple(total.ravel().tolist())
 
 
+def rim_faces(pressure: Array, plastic: Mask, grid: Grid) -> int:
+    """Return the number of faces along the edge whose element has one at the hardness behind it.
+
+    >>> pressure = np.array([[0.0, 0.0, 0.3, 1.0, 1.0, 0.8, 0.4, 0.0]])
+    >>> rim_faces(pressure, pressure == 1.0, Grid((1, 8), (1.0, 8.0)))
+    1
+    """
+    if not plastic.any():
+        return 0
+    ways = _ways(pressure, np.zeros_like(pressure), grid)
+    return sum(int((_beside(*way)[2] >= pressure[plastic].min()).sum()) for way in ways)
+
+
 def wall_pressure(pressure: Array, clearance: Array, grid: Grid) -> float:
     """Return the maximum pressure of faces towards which it does not fall, where the gap hardly rises beyond.
 

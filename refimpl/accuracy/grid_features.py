@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from refimpl.accuracy.constants import constant, table
-from refimpl.accuracy.contact_edge import NO_FACES, edge_faces, wall_pressure
+from refimpl.accuracy.contact_edge import NO_FACES, edge_faces, rim_faces, wall_pressure
 from refimpl.accuracy.iteration_error import CORRECTED, merged, reported_numbers
 from refimpl.accuracy.peak import NO_PEAK, Peak, deepest, highest, on_crest
 from refimpl.grid import Array, Grid, inner, second_differences
@@ -46,6 +46,7 @@ class GridFeatures:
     depth : how far tractions pressed the contact in (m)
     shear_to_normal_ratio : ``|c / a| tau A / N``: tau's displacement over the pressure's; of a law that is
         not linear all shear's
+    rim_faces : faces of the contact's edge just before elements at the hardness
     plastic_edge : the like along the edge of the elements at the hardness (m^2)
     straight : edges of the contact along the grid
     plastic_straight : the like of the elements at the hardness
@@ -75,6 +76,7 @@ class GridFeatures:
     faces: tuple[float, ...] = NO_FACES
     depth: float = 0.0
     shear_to_normal_ratio: float = 0.0
+    rim_faces: int = 0
     plastic_edge: float = 0.0
     straight: StraightEdges = NO_STRAIGHT_EDGES
     plastic_straight: StraightEdges = NO_STRAIGHT_EDGES
@@ -153,6 +155,7 @@ class GridFeatures:
             numbers=reported_numbers(problem, state),
             edge=state.contact_area - state.contact_area_corrected,
             faces=edge_faces(state.pressure, state.clearance, grid),
+            rim_faces=rim_faces(state.pressure, state.plastic, grid),
             symmetry_multiplicity=symmetry_multiplicity(state.contact, grid),
             peak=pressure_peak(problem, state),
             first_contact=first_contact(problem),

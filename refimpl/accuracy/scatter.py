@@ -22,6 +22,7 @@ _SLOPES = constant("slope_single_power")
 _ALONE = constant("area_single_power")
 _RISING, _NARROW = 4, 5  # first kinds of faces to which pressures do not fall, beyond which gaps do not rise
 AREA_SCATTER = table("area_scatter")  # elements, of each of `area_counts`
+RIM_SCATTER = constant("rim_scatter")  # elements, of each of `rim_count`
 _GAP_STRAIGHT = constant("gap_straight_scatter")
 PLASTIC_LACK = constant("plastic_lack")  # area that yields in part, over that of the edge
 PLASTIC_SCATTER = table("plastic_scatter")  # scatter at each of `plastic_sizes`
@@ -50,9 +51,15 @@ def area_counts(result: GridFeatures) -> Array:
     return np.concatenate([counts * together, [straight, uneven, straight * single, rising.sum() ** 2]])
 
 
+def rim_count(result: GridFeatures) -> float:
+    """Return the faces before elements at the hardness, times the symmetric copies."""
+    return result.rim_faces * result.symmetry_multiplicity
+
+
 def area_scatter(result: GridFeatures) -> float:
     """Return the standard deviation of the area about its mean excess (m^2)."""
-    return math.sqrt(AREA_SCATTER**2 @ area_counts(result)) * result.grid.element_area
+    rim = RIM_SCATTER**2 * rim_count(result)
+    return math.sqrt(AREA_SCATTER**2 @ area_counts(result) + rim) * result.grid.element_area
 
 
 def straight_scatter(result: GridFeatures) -> float:

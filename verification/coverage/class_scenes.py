@@ -35,6 +35,7 @@ class _Draw(Dice):
         self.ball = not self.periodic  # presses the surface, instead of a flat
         self.pressed_share = 0.05, 0.6  # range of the load over that of full contact
         self.radii = 0.1, 0.3  # range of Hertz's contact radius over the shorter side
+        self.hardness = 0.7, 3.0  # range of a cap over the pressure
         self.slope: float | None = None  # rms gradient that sets the load, in place of the surface's
         self.other: rf.Surface | None = None  # roughness of the upper body
         self.known: tuple[float, float] | None = None  # load (N) and contact radius (m), in closed form
@@ -202,6 +203,12 @@ def _rounded_punch(draw: _Draw) -> rf.Surface:
     return punch
 
 
+def _beyond_yield(draw: _Draw) -> rf.Surface:
+    """Return roughness, or a smooth flat under a ball, of which half or nearly all is at the hardness."""
+    draw.hardness, draw.radii = (0.3, 1.0), (0.08, 0.22)
+    return rf.Flat() if draw.ball and draw.rng.integers(2) else _isotropic(draw)
+
+
 CLASSES: dict[str, Kind] = {
     "isotropic": _isotropic,
     "lay along sliding": _lay(0.0),
@@ -228,6 +235,7 @@ CLASSES: dict[str, Kind] = {
     "60 to 95 % contact": _mostly_contact,
     "capped dimples": _dimples,
     "ridges": partial(_profile, shape="ridges"),
+    "capped beyond yield": _beyond_yield,
 }
 
 
@@ -266,6 +274,6 @@ def _with_friction(draw: _Draw, kind: str, base: rf.Scene, load: float, pressed:
     friction = rf.Friction(tau=pressed * draw.log(0.01, 0.3), beta=draw.log(0.01, 0.3))
     lower = base.lower
     if kind.startswith("capped"):
-        H = max(pressed * draw.log(0.7, 3), 2 * load / (base.lengths[0] * base.lengths[1]))
+        H = max(pressed * draw.log(*draw.hardness), 2 * load / (base.lengths[0] * base.lengths[1]))
         lower = rf.Body(replace(lower.material, hardness=H), lower.surface)
     return replace(base, lower=lower, friction=friction, load=load, sliding_direction=draw.direction)

@@ -21,7 +21,7 @@ import scipy
 from refimpl.accuracy.contact_edge import GAPS, KINDS, PRESSURES
 from refimpl.accuracy.discretisation_error import approach_sizes, rest_sizes
 from refimpl.accuracy.grid_features import GridFeatures
-from refimpl.accuracy.scatter import area_counts, edge_scatter, plastic_sizes, straight_share
+from refimpl.accuracy.scatter import area_counts, edge_scatter, plastic_sizes, rim_count, straight_share
 from refimpl.grid import Array
 from verification.coverage import classes
 from verification.coverage.building import Solved, merged, pack, solve_all, solved, unpacked
@@ -41,6 +41,8 @@ BUILDING_SEED, JUDGING_SEED = 5_000_000, 10_000_000
 EARLIER = "set before this program, by scenes of `verification.coverage.scenes`; no building scene gives it"
 FREEDOMS = 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 10.0
 _LEAST_WAVES = 0.005  # share of the rms gradient that a grid misses, from which its area is no edge's
+
+_AREA = "contact_area_corrected"
 
 Row = tuple[float, Array, Array]  # error, sizes of the mean's parts, squared sizes of the scatter's
 Constant = dict[str, Any]
@@ -164,6 +166,31 @@ def area_constants(scenes: Sequence[Solved]) -> dict[str, Constant]:
     }
 
 
+def rim_constants(scenes: Iterable[Solved], edge: Mapping[str, Constant]) -> dict[str, Constant]:
+    """Return the scatter of faces before elements at the hardness, beside that of every edge."""
+    scatter, spread, freedom = (
+        edge[name]["value"] for name in ("area_scatter", "excess_spread", "area_freedom")
+    )
+
+    def sizes(features: GridFeatures, dA: float) -> Array:
+        """Return the squares in elements of dA: of the rim, and all else."""
+        ratio = features.grid.element_area / dA
+        own = np.square(scatter) @ area_counts(features) * ratio**2 + (spread * features.excess / dA) ** 2
+        return np.array([rim_count(features) * ratio**2, own])
+
+    rows = []
+    for one in scenes:
+        reference = one.grids[-1]
+        for grid in one.grids[:-1]:
+            if grid.rim_faces and missed(grid) <= _LEAST_WAVES:
+                dA = grid.grid.element_area
+                off = (grid.corrected[_AREA] - reference.corrected[_AREA]) / dA
+                rows.append((off, *(sizes(grid, dA) + sizes(reference, dA))))
+    errors, rim, known = np.array(rows).T
+    found = fit(errors, np.zeros((len(rows), 0)), rim[:, None], freedoms=[freedom], known=known, start=0.1)
+    return {"rim_scatter": constant(found.scale[0], found.scale_error[0], found)}
+
+
 SAMPLES: dict[str, Sample] = {
     "bulk": _rest_row,
     "binormal": _transverse_row,
@@ -205,6 +232,7 @@ def _rounded(values: Array) -> Any:
 def fitted(scenes: Sequence[Solved]) -> dict[str, Constant]:
     """Return all constants that the building scenes give, by name."""
     found = area_constants(scenes)
+    found |= rim_constants(scenes, found)
     for name in SAMPLES:
         found |= scatter_constants(name, scenes)
     return found

@@ -31,6 +31,7 @@ def fit(
     *,
     freedoms: Sequence[float],
     prior: Array | None = None,
+    known: Array | float = 0.0,
     start: float = 1.0,
 ) -> Fitted:
     """Return the likeliest ``mean`` and ``scale`` of ``errors = means @ mean + sqrt(squares @ scale^2) t``.
@@ -42,14 +43,21 @@ def fit(
     squares : array (n, m), squared sizes of the parts of the scatter
     freedoms : degrees of freedom of Student's t to choose from
     prior : array (k, k), precision of a normal prior of ``mean`` about zero
+    known : array (n,), squares of scatter that is known beside ``squares @ scale^2``
     start : scale from which the search begins
     """
-    found = (_fit(errors, means, squares, freedom, prior, start) for freedom in freedoms)
+    found = (_fit(errors, means, squares, freedom, prior, known, start) for freedom in freedoms)
     return max(found, key=lambda one: one.likelihood)
 
 
 def _fit(
-    errors: Array, means: Array, squares: Array, freedom: float, prior: Array | None, start: float
+    errors: Array,
+    means: Array,
+    squares: Array,
+    freedom: float,
+    prior: Array | None,
+    known: Array | float,
+    start: float,
 ) -> Fitted:
     k, m = means.shape[1], squares.shape[1]
     precision = np.zeros((k, k)) if prior is None else prior
@@ -58,7 +66,7 @@ def _fit(
 
     def loss(x: Array) -> tuple[float, Array]:
         mean, variances = x[:k], np.exp(2 * x[k:])
-        variance = squares @ variances + np.finfo(float).tiny
+        variance = known + squares @ variances + np.finfo(float).tiny
         rest = errors - means @ mean
         ratio = rest**2 / variance
         weight = (freedom + 1) / (freedom + ratio)
