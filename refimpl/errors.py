@@ -144,11 +144,6 @@ def require_one_of(field: str, value: object, allowed: Iterable[str]) -> None:
         raise InputError(field, value, f"one of {', '.join(known)}")
 
 
-def unreadable(path: Path, allowed: str) -> InputError:
-    """Return the refusal of a file of heights."""
-    return InputError("path", str(path), allowed)
-
-
 def require_regular(field: str, path: Path, most: int) -> None:
     """Raise `InputError` for a device or a pipe, which may have no end, and for a file of more bytes."""
     found = os.path.exists(path) and not os.path.isdir(path)  # no error for long names

@@ -108,7 +108,10 @@ class GridFeatures:
 
     @property
     def excess(self) -> float:
-        """Mean excess of the counted area along its edge (m^2); of a cap, at most what others leave."""
+        """Mean excess of the counted contact area along its edge (m^2), which may be negative.
+
+        Under a cap it is at most `unfilled`: the load needs the rest of the area.
+        """
         if not self.touching:
             return 0.0
         found = float(EXCESS @ self.excess_terms) * self.grid.element_area
@@ -268,9 +271,11 @@ def _undecided(pressure: Array, grid: Grid) -> Array:
 
 
 def slope_displacement_error(problem: Problem, state: State) -> float:
-    """Return how far the slopes' differences leave ``u / (cos theta_x cos theta_y)`` open (m).
+    """Return how far differenced slopes leave ``u / (cos theta_x cos theta_y)`` open, but for a factor (m).
 
-    Central differences of a wave q lack ``(q h)^2 / 6`` of its tangent; second ones are ``(q h)^2`` of it.
+    It is a sixth of the product of three root mean squares by pressure: of u, of the tangents and of their
+    second differences. Central differences of a wave q lack the share ``(q h)^2 / 6`` of its tangent, and the
+    second differences of a tangent are ``(q h)^2`` of it.
     """
     pressure, slopes = state.pressure, state.slopes
     total = float(pressure.sum())

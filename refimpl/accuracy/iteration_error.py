@@ -47,7 +47,10 @@ def reported_numbers(problem: Problem, state: State) -> dict[str, float]:
 
 
 def without_rule(law: FrictionLaw) -> tuple[str, ...]:
-    """Return the numbers without a rule for error bars: tau's alone is known, as of a linear law."""
+    """Return the numbers without a rule for error bars: of a nonlinear law mu and F, else none.
+
+    Only tau's effect on an element too many is known.
+    """
     corrected = tuple(name for name, raw in CORRECTED.items() if raw in _SHEARED)
     return () if law.is_linear else (*_SHEARED, *corrected)
 

@@ -29,10 +29,12 @@ PLASTIC_FREEDOM = constant("plastic_freedom")  # weight of the prior
 
 
 def area_counts(result: GridFeatures) -> Array:
-    """Return the numbers of elements by which an area scatters about its mean excess, each by its own unit.
+    """Return the counts by which an area scatters about its mean excess, one for each of `AREA_SCATTER`.
 
-    Ordinary faces; those of rising pressures, of level gaps, of both; undecided and single elements: all as
-    often as symmetric. Then, squared, straight edges, their uneven and narrow shares, and all of one rim.
+    1 to 4: faces, ordinary, towards which pressures do not fall, beyond which gaps do not rise, and both.
+    5, 6: undecided elements amid the contact, and single elements. 1 to 6 are times the symmetric copies.
+    7 to 9: straight edges, squared; the share of them by faces of 2 to 4; their share in narrow strips.
+    10: the square of all faces towards which pressures do not fall, as if of one rim.
     """
     dA, together = result.grid.element_area, result.symmetry_multiplicity
     area = result.numbers["contact_area"]

@@ -138,7 +138,7 @@ class EnergyNorm:
         return math.sqrt(max(square, 0.0))
 
     def solve(self, right: Array, where: Mask) -> tuple[Array, Array]:
-        """Return ``z`` and ``a z`` about ``right`` on the marked elements, ``z = 0`` elsewhere (CG)."""
+        """Return ``z``, zero off the marked elements, and ``a z``, about ``right`` on them (CG)."""
         z = np.zeros_like(right)
         residual = np.where(where, right, 0.0)
         direction, product = z, 0.0

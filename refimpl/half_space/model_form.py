@@ -84,7 +84,10 @@ def model_form(
     displacements: tuple[Array, Array],
     approach: float,
 ) -> ModelForm:
-    """Return the stated errors of approach and N; displacements into the bodies (m). Zero without contact."""
+    """Return the stated relative errors of approach and N; zero without contact.
+
+    ``approach`` counts from first contact (m); ``displacements`` are into the (lower, upper) body (m).
+    """
     contact = pressure > 0
     if not contact.any():
         return ModelForm(0.0, 0.0)

@@ -38,7 +38,8 @@ def _first_order(problem: Problem, tangent: float) -> float:
 def half_space_excess(problem: Problem, state: State) -> tuple[float, str] | None:
     """Return the stated error of N and the warning's text where it exceeds `ALLOWED`; else None.
 
-    A bound comes first. A window twice as wide as the contact has 0.99 to 1.01 of the whole grid's number.
+    A bound by the slopes alone comes first. What exceeds it is computed in a window twice as wide as the
+    contact, which gives 0.99 to 1.01 of the whole grid's number.
     """
     steep = steepness(problem, state.contact)
     bound = _MARGIN * _first_order(problem, math.sqrt(steep)) + (_REST + SECOND_ORDER["normal_force"]) * steep

@@ -49,7 +49,10 @@ def trial_responses(
 def propose(
     theta: Array, covariance: Array, trials: Sequence[tuple[float, Response]], relative: float
 ) -> Proposal | None:
-    """Return one or two trial loads with the least variance of tau; ``relative``: u of a further row."""
+    """Return the one or two trial loads with the least variance of tau; None without trials.
+
+    ``relative`` is the relative standard uncertainty of a further row.
+    """
     proposals = []
     for count in (1, 2):
         for chosen in itertools.combinations(trials, count):

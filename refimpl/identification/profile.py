@@ -46,7 +46,10 @@ def floor(gradient: Array) -> float:
 def interval_ends(
     excess: Callable[[float], float], middle: float, spread: float, least: float
 ) -> tuple[float, float]:
-    """Return where ``excess`` changes sign about ``middle``; infinite beyond `_FARTHEST`, or ``least``."""
+    """Return the ends of an interval, where ``excess`` changes its sign below and above ``middle``.
+
+    The low end is ``least`` if that is inside. An end further than `_FARTHEST` spreads is infinite.
+    """
     high, low = middle + spread, max(middle - spread, least)
     while excess(high) < 0:
         high += high - middle
@@ -123,7 +126,10 @@ class Profile:
         return quantile(self.degrees / share**2)
 
     def interval(self, gradient: Array) -> tuple[float, float]:
-        """Return the 95 % interval of ``gradient theta``; its low end is 0 where a bound is inside."""
+        """Return the 95 % interval of ``gradient theta``.
+
+        Its low end is 0 if the bounds allow no less and 0 is inside.
+        """
         middle, g = float(gradient @ self.optimum), gradient * self.scale
         spread = math.sqrt(float(g @ np.linalg.inv(self.precision) @ g))
         return interval_ends(lambda value: self.excess(gradient, value), middle, spread, floor(gradient))

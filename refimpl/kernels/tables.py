@@ -94,7 +94,10 @@ def _symmetric_table(kernel: Kernel, n: int, m: int, edge: float, known: Array |
 
 
 def _begun(kernel: Kernel, n: int, m: int, dx: float, dy: float, known: Array | None) -> tuple[Array, int]:
-    """Return a table of NaN with its first corner, known or by the closed form, and that one's size."""
+    """Return a table with its first corner, known or by the closed form, and the known corner's size.
+
+    All else is NaN, so that no gap between slabs goes unseen.
+    """
     table = np.full((n, m), np.nan)
     if known is not None and min(known.shape) >= _NEAR_COUNT:
         rows, columns = min(known.shape[0], n), min(known.shape[1], m)
@@ -110,7 +113,11 @@ def _offsets(start: int, stop: int, edge: float) -> Array:
 
 
 def _slabs(n: int, m: int, known: int) -> Iterator[tuple[int, int]]:
-    """Yield ``[start, stop)`` beyond ``known``, thin near the load, where the order changes fast."""
+    """Yield ``[start, stop)`` beyond ``known``, thin near the load, where the order changes fast.
+
+    Where slabs start does not depend on n and m as long as both are larger. So a table that starts from a
+    known one is the same to the last bit.
+    """
     start = _NEAR_COUNT
     while start < max(n, m):
         evaluations = order_for(2.0 * start) * min(start, n, m)  # per row

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.errors import InputError, unreadable
+from refimpl.errors import InputError
 from refimpl.grid import Array
-from refimpl.measured.reading import MAX_POINTS, Overrides
+from refimpl.measured.reading import MAX_POINTS, Overrides, unreadable
 
 ARRAYS = ("npz", "mat", "h5")  # formats whose arrays may be anything
 HEIGHTS = ("z", "h", "height", "heights", "topography", "surface")

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from refimpl.errors import unreadable
+from refimpl.measured.reading import unreadable
 
 _GROUPED = r"[-+]?[1-9]\d{0,2}[.,]\d{3}"
 _THOUSANDS, _ROW = re.compile(_GROUPED), re.compile(rf"(?:{_GROUPED}[\s;]+)*{_GROUPED}[\s;]*")

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.errors import InputError, unreadable
+from refimpl.errors import InputError
 from refimpl.measured.channels import (
     ARRAYS,
     choose,
@@ -26,7 +26,17 @@ from refimpl.measured.channels import (
 )
 from refimpl.measured.file_kinds import kind_of
 from refimpl.measured.point_tables import points_map
-from refimpl.measured.reading import ALONG_Y, ARRAY, IMAGE, UNITS, Overrides, RawHeights, checked, first_line
+from refimpl.measured.reading import (
+    ALONG_Y,
+    ARRAY,
+    IMAGE,
+    UNITS,
+    Overrides,
+    RawHeights,
+    checked,
+    first_line,
+    unreadable,
+)
 from refimpl.measured.text_lines import WYKO
 from refimpl.measured.workarounds import NMS_UNIT, Source, rewritten
 

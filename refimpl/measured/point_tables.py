@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from refimpl.errors import InputError, size_text, unreadable
+from refimpl.errors import InputError, size_text
 from refimpl.grid import Array
-from refimpl.measured.reading import MAX_POINTS, UNITS, Overrides, RawHeights, checked
+from refimpl.measured.reading import MAX_POINTS, UNITS, Overrides, RawHeights, checked, unreadable
 
 POINT = 3  # columns; a map has four at least
 _SAME_PITCH = 0.01  # relative difference of two pitches: digits of a given one

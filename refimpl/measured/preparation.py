@@ -52,7 +52,7 @@ def prepare(
 ) -> RawHeights:
     """Return the map with outliers missing and wavelengths filtered, a note for each step.
 
-    The keys are those of a scene file (`refimpl.scene.key_texts`); filters are those of ISO 16610-61, with
+    ``data/scene_keys.toml`` has units and meanings of the keys. Filters are those of ISO 16610-61, with
     weights normalised at the border (ISO 16610-28) after the plane of the whole map is set aside.
     """
     if outliers is not None:
@@ -81,14 +81,17 @@ def outlying(z: Array, known: Mask, times: float, repeats: bool = False) -> tupl
     i, j = np.nonzero(out)
     reach = np.arange(NEIGHBOURHOOD) - NEIGHBOURHOOD // 2
     mode: Literal["wrap", "clip"] = "wrap" if repeats else "clip"
-    near = [np.ravel_multi_index((i + k, j + m), z.shape, mode=mode) for k in reach for m in reach]
-    around = np.partition(away.take(near), _RANK, axis=0)[_RANK]
+    near = [away.take(np.ravel_multi_index((i + k, j + m), z.shape, mode=mode)) for k in reach for m in reach]
+    around = np.partition(near, _RANK, axis=0)[_RANK]
     out[i, j] = away[i, j] > times * around / PERCENTILE_TO_RMS
     return out, spread
 
 
 def off_neighbours(z: Array, repeats: bool) -> Array:
-    """Return the median distance of each point from the means of neighbours on the four lines through it."""
+    """Return the median distance of each point from the means of neighbours on the four lines through it.
+
+    Lines that leave the map count as straight.
+    """
     padded = np.pad(z, 1, mode="wrap") if repeats else np.pad(z, 1, mode="reflect", reflect_type="odd")
     nx, ny = z.shape
     total, low, high = np.zeros_like(z), np.full_like(z, np.inf), np.full_like(z, -np.inf)

@@ -19,7 +19,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TypeVar
 
-from refimpl.errors import InputError, unreadable
+from refimpl.errors import InputError
+from refimpl.measured.reading import unreadable
 from refimpl.operating_system import limit_process
 
 T = TypeVar("T")

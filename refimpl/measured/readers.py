@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from refimpl.errors import InputError, size_text, unreadable
+from refimpl.errors import InputError, size_text
 from refimpl.grid import Array
 from refimpl.measured.file_kinds import kind_of
 from refimpl.measured.instrument_files import claimed_by_magic, library_for, read_as, read_instrument
@@ -29,6 +29,7 @@ from refimpl.measured.reading import (
     checked,
     far_points,
     read_or_refuse,
+    unreadable,
 )
 from refimpl.measured.text_lines import WYKO
 from refimpl.measured.text_tables import TextTable, read_table

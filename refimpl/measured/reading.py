@@ -9,7 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from refimpl.errors import InputError, printable, require_size, size_text, unreadable
+from refimpl.errors import InputError, printable, require_size, size_text
 from refimpl.grid import Array
 
 T = TypeVar("T")
@@ -100,6 +100,11 @@ class Overrides:
         for edge in edges:
             require_size(f"pixel of {name}", edge, "a positive length in m")
         return ASCII.get(used, used), edges, tuple(notes)
+
+
+def unreadable(path: Path, allowed: str) -> InputError:
+    """Return the refusal of a file of heights."""
+    return InputError("path", str(path), allowed)
 
 
 def read_or_refuse(path: Path, load: Callable[[], T]) -> T:

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from refimpl.errors import unreadable
 from refimpl.grid import Array
 from refimpl.measured.point_tables import POINT
+from refimpl.measured.reading import unreadable
 
 _NUMBER = re.compile(r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eEdD][-+]?\d+)?")
 _WHOLE = re.compile(r"\d+")

@@ -11,10 +11,10 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from refimpl.errors import MOST, InputError, unreadable
+from refimpl.errors import MOST, InputError
 from refimpl.grid import Array
 from refimpl.measured.reader_process import read_elsewhere
-from refimpl.measured.reading import read_or_refuse
+from refimpl.measured.reading import read_or_refuse, unreadable
 
 T = TypeVar("T")
 

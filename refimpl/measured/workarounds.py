@@ -12,9 +12,8 @@ import struct
 import zlib
 from pathlib import Path
 
-from refimpl.errors import unreadable
 from refimpl.measured import x3p
-from refimpl.measured.reading import MAX_BYTES, UNITS, Overrides
+from refimpl.measured.reading import MAX_BYTES, UNITS, Overrides, unreadable
 
 Source = str | io.BytesIO
 
@@ -88,7 +87,10 @@ def _gwy_unit(field: bytes, key: bytes) -> str:
 
 
 def wyko_header(path: Path, header: tuple[str, ...]) -> tuple[str, ...]:
-    """Return Wyko's header with all numbers as type 7, which the library sees, and a Mult."""
+    """Return Wyko's header with all numbers as type 7, which the library sees, and a Mult.
+
+    Heights are in nm if the second flag of the first line is 1, else in Wavelength / Mult nm.
+    """
     named = {line.split()[0] for line in header}
     if "Wavelength" not in named and header[0].split()[-2] != "1":
         raise unreadable(path, "Wyko's text with a Wavelength, which scales its heights")

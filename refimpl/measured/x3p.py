@@ -14,7 +14,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from refimpl.errors import printable, unreadable
+from refimpl.errors import printable
+from refimpl.measured.reading import unreadable
 
 _REVISION = "ISO5436 - 2000"  # the one text that the library takes
 _DATA = "bindata/data.bin"

@@ -17,7 +17,7 @@ from refimpl.kernels import normal_table, tangential_table
 _TABLES = {"normal": normal_table, "tangential": tangential_table}
 _SHARED = 4  # ratio of sides up to which a table is square: windows of all these shapes share it
 _KEPT = 8  # tables kept, the last used ones; a square grid needs two
-_LARGEST = 4_000_000  # entries of a table that is kept: 32 MB, which take 0.25 s to compute again
+_LARGEST = 4_000_000  # entries of a table that is kept: 32 MB each, 256 MB with `_KEPT`
 _cache: OrderedDict[tuple[str, float, bool], Array] = OrderedDict()
 
 

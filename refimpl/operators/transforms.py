@@ -156,7 +156,11 @@ def even_hat(quarter: Array, workers: int) -> Array:
 
 
 def odd_hat(along_x: Array, along_y: Array | None, workers: int) -> Complex:
-    """Return the symbols of kernels odd along the first axis and the second; zero opposite 0."""
+    """Return the symbols of a sum of kernels, odd along the first axis and the second, even along the other.
+
+    Where they are odd they are taken to be zero opposite 0: `_is_odd` of the caller makes sure that nobody
+    needs that offset.
+    """
     sines = _mirrored(fourier.odd_plane(along_x, workers), 1.0)
     if along_y is not None:
         sines += _mirrored(fourier.odd_plane(along_y.T, workers).T, -1.0)

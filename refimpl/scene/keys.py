@@ -74,9 +74,9 @@ def scene_keys() -> dict[str, tuple[Key, ...]]:
         "material": _of(Material, key_texts.MATERIAL, _material),
         "friction": _of(Friction, key_texts.FRICTION, _friction),
     }
+    surfaces = _complete("surface", key_texts.SURFACES, list(KINDS))
     for kind, made in KINDS.items():
-        texts = _complete(kind, key_texts.SURFACES[kind], [f.name for f in fields(made) if f.init])  # type: ignore[arg-type]  # dataclasses all
-        tables[f"surface, {kind}"] = _of(made, texts, partial(_surface, kind))
+        tables[f"surface, {kind}"] = _of(made, surfaces[kind], partial(_surface, kind))
     return tables
 
 

@@ -55,7 +55,12 @@ def with_parameter(scene: Scene, name: str, value: float) -> Scene:
 
 
 def differentiable_parameters(scene: Scene) -> dict[str, float]:
-    """Return the parameters that have derivatives: not zero, no rigid body's, no other realisation's."""
+    """Return the parameters that have derivatives; ``[tolerances]`` refuses all others.
+
+    No derivatives have those that are zero, E and nu of a rigid body, and those that make another realisation
+    of a surface: seeds, wavelengths of a spectrum (in a periodic scene its anisotropy and lay too), and the
+    correlation length of an isotropic surface in a periodic scene.
+    """
     found = parameters(scene)
     for name in BODIES:
         body: Body = getattr(scene, name)

@@ -208,7 +208,10 @@ class Scene:
         return math.ceil(max(self.lengths) / min(self.lengths) / _SLENDER)
 
     def refined(self, M: int) -> Grid:
-        """Return M elements along the longer side, a multiple of ``16 slenderness``: one ratio for all M."""
+        """Return the grid of M elements along the longer side, a multiple of ``16 slenderness``.
+
+        An element's ratio of edges is nearly 1, and the same for every M.
+        """
         nx, ny = self.grid(_FAVOURED * self.slenderness).shape
         return self.grid((nx * M // max(nx, ny), ny * M // max(nx, ny)))
 

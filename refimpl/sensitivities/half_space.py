@@ -60,7 +60,10 @@ class HalfSpaceError:
 
 
 def half_space_error(scene: Scene, solution: Solution) -> HalfSpaceError:
-    """Estimate by two solves what the half-space costs each number. Raises `NotConverged`."""
+    """Estimate the half-space's error in approach, N, mu, A, p_max and Q of a solution.
+
+    Costs at most two solves on the solution's grid. Raises `NotConverged` where one does not converge.
+    """
     problem = solution.details.problem
     z_lower, z_upper = problem.heights
     first = solution.approach + problem.datum  # from the first contact of the scene as given

@@ -64,7 +64,10 @@ class Sensitivity:
     contact_stiffness: float = math.nan
 
     def relative(self, number: str, parameter: str) -> float:
-        """Return ``(p / q) dq/dp``; `InputError` for a number that is zero or a name that is none."""
+        """Return ``(p / q) dq/dp``: the per cents that q changes by for one per cent of p.
+
+        Raises `InputError` for a number that is zero or an unknown name.
+        """
         require_one_of("number", number, self.derivatives)
         require_one_of("parameter", parameter, self.parameters)
         derivative, found = self.derivatives[number][parameter], self.found[number]
@@ -202,7 +205,8 @@ def _gathered(
 def friction_slopes(scene: Scene, solution: Solution) -> tuple[float, float]:
     """Return ``d mu / d tau`` (1/Pa) and ``d mu / d beta`` of the corrected mu at the contact set.
 
-    Two GMRES solves; the edge does not move. Contact at the hardness alone has sums. Raises as `sensitivity`.
+    Costs two GMRES solves. The motion of the contact's edge is neglected. If all contact is at the hardness,
+    pressures are fixed and both numbers are sums. Both parameters must be positive. Raises as `sensitivity`.
     """
     base = solution.details.problem.with_terms(_terms(solution))
     active, excess = solution.contact & ~solution.details.excluded, solution.details.features.excess

@@ -77,7 +77,10 @@ class Solution(Record):
         return patches_of(self.pressure, self.details.plastic, self.grid)
 
     def to_xarray(self) -> Any:
-        """Return an `xarray.Dataset`: units and numbers as attributes; `InputError` without xarray."""
+        """Return an `xarray.Dataset` of the fields: coordinates in m, units and numbers as attributes.
+
+        Raises `InputError` without xarray.
+        """
         return as_dataset(self)
 
     def __str__(self) -> str:

@@ -190,7 +190,8 @@ def iterate(solver: TauSolver, problem: Problem, tolerance: float) -> TauResult:
 def promising(problem: Problem, operator: Influence, pressure: Array, excluded: Mask, reach: float) -> bool:
     """Return whether tau on the excluded elements as well may leave the contact as it is.
 
-    All have more pressure than closes the gap that it opens, excluded ones than what it does to slopes.
+    That tau opens a gap, and to close it takes pressure: every element must have more than that. Excluded
+    elements must also have a least pressure, for what tau does to the slopes.
     """
     stiffness = 1 / problem.elasticity.element_compliance(problem.grid)
     held = problem.friction.shear_offset(pressure, excluded)

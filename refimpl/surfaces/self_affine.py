@@ -213,7 +213,10 @@ class SelfAffineRoughness(Surface):
         return 1.0 - math.sqrt(seen / slope), 1.0 - math.sqrt(bent / curvature)
 
     def _quadrature(self, spacing: float) -> tuple[Array, Array]:
-        """Return points q (rad/m) and weights over log q: ten Gauss points per eighth of an octave."""
+        """Return points q (rad/m) and weights over log q: ten Gauss points per panel.
+
+        A panel is at most an eighth of an octave and half an oscillation of the Bessel functions wide.
+        """
         ends = [2.0 * math.pi / wave for wave in (self.long_cut, self.roll_off, self.short_cut)]
         node, weight = np.polynomial.legendre.leggauss(10)
         points, weights = [], []

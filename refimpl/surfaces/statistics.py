@@ -39,7 +39,10 @@ def rms_slopes(z: Array, spacing: float | tuple[float, float]) -> tuple[float, f
 
 
 def autocorrelation(z: Array, axis: int) -> Array:
-    """Return mean products at lags 0, 1, ... along an axis, over the variance; nothing wraps."""
+    """Return mean products at lags 0, 1, ... along an axis, over the variance: shape ``(z.shape[axis],)``.
+
+    A lag averages the pairs there are: nothing wraps. Heights without variance give NaN.
+    """
     deviations = np.moveaxis(z - np.mean(z), axis, -1)
     n = deviations.shape[-1]
     spectrum = np.fft.rfft(deviations, 2 * n)

@@ -79,7 +79,10 @@ class CappedCG(ProjectedCG):
         return max(relative, missed), penetration
 
     def undecided(self, stiffness: float, among: Mask | None = None) -> int:
-        """Return what `ProjectedCG` does below the cap, else all elements: load may move anywhere."""
+        """Return what `ProjectedCG` does where no pressure is at the cap or near it; else all elements.
+
+        Load that capped elements do not bear may bring any others into contact.
+        """
         below_cap = not self.capped.any() and bool(self._pressing.max(initial=0.0) < _FULL * self._cap)
         return super().undecided(stiffness, among) if below_cap else self.capped.size
 

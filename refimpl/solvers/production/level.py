@@ -82,7 +82,8 @@ class LevelSolver:
 
     def result(self, tolerance: float) -> SolverResult:
         """Solve under the rule for tau's active set; not final where ``window_too_small``."""
-        ended, used = iterate(self, self.problem, tolerance), self.lagged.indentation
+        ended = iterate(self, self.problem, tolerance)
+        used = self.lagged.indentation
         status = ended.status(self._status())
         if self._status() is not Status.CONVERGED and not (ended.settled or self.exhausted or self.stagnated):
             status = Status.ITERATION_LIMIT

@@ -179,3 +179,16 @@ def test_contact_that_fills_the_window_has_no_error_bar() -> None:
     refined = rf.solve(full, accuracy=0.01)
     assert refined.status is rf.Status.ACCURACY_NOT_REACHED
     assert max(refined.grid.shape) == 64
+
+
+def test_a_sum_over_slopes_that_cancels_is_no_better_known_than_its_terms() -> None:
+    """Without friction F is slopes alone, a vector's component: there is a direction in which it is zero."""
+    scene = replace(sliding_ball(0.3e-6, 1), friction=rf.Friction())
+    ahead = rf.solve(scene, grid=64, oblique=True, tolerance=1e-12)
+    across = math.atan2(-ahead.friction_force, ahead.binormal_force)
+    scene = replace(scene, sliding_direction=across)
+    loose, tight = (rf.solve(scene, grid=64, oblique=True, tolerance=t) for t in (1e-3, 1e-12))
+    assert abs(tight.friction_force) < 1e-6 * abs(tight.binormal_force)
+    for name in ("friction_coefficient", "friction_force"):
+        missed = abs(getattr(loose, name) - getattr(tight, name))
+        assert 0.01 * abs(getattr(loose, name)) < missed < loose.uncertainty[name]["iteration"]

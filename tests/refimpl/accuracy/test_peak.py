@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import refimpl as rf
 from refimpl.accuracy import discretisation_error
 from refimpl.accuracy.discretisation_error import APPROACH_SCATTER, PEAK_BIAS, PEAK_BIAS_SPREAD, estimates
 from refimpl.accuracy.peak import NO_PEAK, Peak, deepest
@@ -153,3 +154,14 @@ def test_a_first_touch_that_is_not_resolved_leaves_the_approach_open() -> None:
     edge = APPROACH_SCATTER[0] * (made_up(64).edge / made_up(64).numbers["contact_area"]) ** 1.5 * 1e-6
     assert bounds[1] == pytest.approx(bounds[0] / edge * math.hypot(edge, APPROACH_SCATTER[4] * 0.02 * 1e-7))
     assert math.isinf(bounds[-1])
+
+
+@pytest.mark.parametrize("M", [1, 2])
+def test_fewer_than_three_elements_a_side_bound_neither_peak_nor_approach(M: int) -> None:
+    steel = rf.Material(E=200e9, nu=0.3)
+    scene = rf.Scene(
+        rf.Body(steel, rf.Sphere(0.14)), rf.Body(steel, rf.Flat()), rf.Friction(), load=70.0, side=1.61e-3
+    )
+    found = rf.solve(scene, grid=M)
+    for name in ("max_pressure", "approach"):
+        assert math.isinf(sum(found.uncertainty[name].values())), name

@@ -127,3 +127,27 @@ def test_what_no_grid_reduces_is_summed_and_ends_the_refinement_with_names_and_s
 def test_nothing_in_contact_ends_the_refinement() -> None:
     apart = replace(made_up(64), numbers=dict.fromkeys(REPORTED, 0.0), edge=0.0)
     assert len(refine_until(lambda M: apart, 0.01, "contact_area").results) == len(FIRST_GRIDS)
+
+
+def test_a_stricter_demand_ends_on_no_coarser_grid_within_limits() -> None:
+    """Bars that fall by h, half of the number at 64 elements: 0.07 takes 512, 0.02 more than are allowed."""
+
+    def result_at(M: int) -> GridFeatures:
+        if M > 512:
+            raise rf.InputError("grid", M, "at most 512 elements a side")
+        return replace(made_up(M), parts={"contact_area": {"neglected": 32 / M * AREA_LIMIT}})
+
+    ends = [refine_until(result_at, accuracy, "contact_area") for accuracy in (0.07, 0.02)]
+    assert [end.results[-1].grid.shape[0] for end in ends] == [512, 512]
+    assert [bool(end.refusal) for end in ends] == [False, True]
+
+
+def test_an_active_set_that_leaves_less_open_than_the_grid_does_not_end_the_refinement() -> None:
+    """0.6 % on all grids where 0.5 % is asked for: grids are refined until the rest of the bar is less."""
+
+    def result_at(M: int) -> GridFeatures:
+        return replace(made_up(M), parts={"contact_area": {"active set": 0.006 * AREA_LIMIT}})
+
+    found = refine_until(result_at, 0.005, "contact_area", grid_sizes=(80, 640))
+    assert "tau's active set" in found.refusal
+    assert [result.grid.shape[0] for result in found.results] == [32, 64, 80, 640]

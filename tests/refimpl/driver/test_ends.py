@@ -103,3 +103,28 @@ def test_a_tolerance_below_rounding_ends_at_the_floor_after_few_steps() -> None:
     assert found.status is rf.Status.STAGNATED
     assert found.certificate.largest < 1e-13
     assert sum(found.cost.iterations.values()) < 200
+
+
+def test_beta_beyond_all_sense_ends_with_a_status() -> None:
+    """Without slopes nothing but displacements can run off."""
+    scene = rf.Scene(
+        upper=rf.Body(rf.Material(1.0, 0.0), rf.Flat()),
+        lower=rf.Body(rf.Material(1e20, 0.3), rf.Flat()),
+        friction=rf.Friction(4.3e-4, 1000.0),
+        load=1e-4,
+        side=1.0,
+        sliding_direction=0.3,
+    )
+    assert not rf.solve(scene, grid=11, approach=0.75, oblique=False).converged
+
+
+def test_contact_where_the_coarser_grid_had_none() -> None:
+    """One element is likely, the grid before pressed others: the start has no pressure at all."""
+    z = np.random.default_rng(1).normal(size=(32, 32))
+    z *= 3.5e-6 / np.ptp(z)
+    soft = rf.Material(E=4.3e7, nu=0.3)
+    scene = rf.Scene(rf.Body(soft, z), rf.Body(soft, rf.Flat()), rf.Friction(), load=3.46e-4, side=3.95e-3)
+    afresh = rf.solve(scene, grid=64)
+    found = rf.solve(scene, grid=64, start=rf.solve(scene, grid=32))
+    assert found.converged
+    assert np.allclose(found.pressure, afresh.pressure, rtol=0, atol=1e-7 * afresh.max_pressure)

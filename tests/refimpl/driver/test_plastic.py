@@ -166,3 +166,13 @@ def test_at_an_approach_the_scenes_load_limits_nothing() -> None:
     with pytest.raises(rf.InputError):
         rf.solve(beyond, 4)
     assert rf.solve(beyond, 4, approach=1e-9).converged
+
+
+def test_more_than_one_plastic_state_carries() -> None:
+    """A ridge of 27 degrees, all at the hardness: 0.958 H A0 at the least approach, more at others."""
+    x = (np.arange(16) + 0.5) / 16 * 1e-3
+    z = np.where(x < 4e-4, 6e-4 + 0.5 * (x - 2e-4), -0.5 * (x - 7e-4))
+    ridge = rf.Body(rf.Material(1e13, 0.3), rf.surfaces.ArraySurface(np.repeat(z[:, None], 16, 1)))
+    flat = rf.Body(rf.Material(1e13, 0.3, hardness=1e8), rf.Flat())
+    scene = rf.Scene(flat, ridge, rf.Friction(5e7, 0.3), 0.967 * 1e8 * 1e-6, side=1e-3, plastic=True)
+    assert rf.solve(scene, 16).converged

@@ -100,3 +100,31 @@ def test_a_contact_that_opens_on_the_way_is_found_again(tau: float, spike: tuple
     assert fft.status is dense.status
     np.testing.assert_array_equal(fft.traction, dense.traction)
     np.testing.assert_allclose(fft.pressure, dense.pressure, rtol=1e-6)
+
+
+def nanoscale(unit: float) -> rf.Scene:
+    """Roughness of 0.2 nm rms on a square of 1 um, by the unit: coarse means lie above first touch."""
+    rough = rf.GaussianRoughness(0.2e-9 * unit, 50e-9 * unit, seed=1)
+    return replace(
+        SMOOTH, upper=rf.Body(STEEL, rough), lower=rf.Body(COPPER, rf.Flat()), side=1e-6 * unit, load=1.0
+    )
+
+
+@pytest.mark.parametrize(("unit", "rounding"), [(2.0**-20, 0.0), (1e3, 1e-9)])
+@pytest.mark.parametrize(("M", "approach"), [(33, 1e-13), (64, 1e-10)])
+def test_lengths_all_scaled_alike_change_no_pressure(
+    M: int, approach: float, unit: float, rounding: float
+) -> None:
+    """Also at an approach that nested grids do not reach. Powers of two scale without rounding."""
+    one, other = (rf.solve(nanoscale(u), M, approach=approach * u) for u in (1.0, unit))
+    assert one.status is other.status is rf.Status.CONVERGED
+    np.testing.assert_allclose(other.pressure, one.pressure, rtol=0, atol=rounding * one.max_pressure)
+
+
+@pytest.mark.parametrize("pressure", [30.0, 100.0])
+def test_slopes_that_run_off_end_with_a_status(pressure: float) -> None:
+    """Mean pressures of many E*: no division by a vanished cosine, no bars on numbers without meaning."""
+    bowl = rf.Body(COPPER, rf.GaussianRoughness(rms=0.5e-6, correlation_length=104e-6, seed=3))
+    load = pressure * SMOOTH.materials.reduced_modulus * SMOOTH.side**2
+    s = rf.solve(replace(SMOOTH, lower=bowl, load=load), 5)
+    assert s.status in (rf.Status.STAGNATED, rf.Status.ITERATION_LIMIT)

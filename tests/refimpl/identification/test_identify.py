@@ -14,7 +14,7 @@ from refimpl.errors import InputError
 from refimpl.identification import Row, identify
 from refimpl.identification.design import propose
 from refimpl.identification.ensemble import mean_response, scatter, working_variances
-from refimpl.identification.fit import linear_fit, shares
+from refimpl.identification.fit import linear_fit, profile_of, shares
 from refimpl.identification.forward import COVERAGE, Response
 from refimpl.identification.laws import _law
 from refimpl.identification.profile import Profile
@@ -301,3 +301,36 @@ def test_statistics_of_a_surface_cover_a_realisation_that_no_fit_draws() -> None
     assert found.values["beta"].low < scene.friction.beta < found.values["beta"].high
     assert found.shares["realisations"][0] > found.shares["measurement"][0]
     assert found.predictions[-1].mu.low < rows[0].mu < found.predictions[-1].mu.high
+
+
+SPAN = np.geomspace(1.0, 200.0, 9)  # N
+
+
+def test_intervals_from_few_draws_cover() -> None:
+    """Areas that scatter as ``P^(-0.6)``, with a correlation in ln P: 95 % cover.
+
+    300 twins: two standard deviations of their share are 2.5 %. Weights by the covariance of four draws
+    cover 80 % instead.
+    """
+    count, correlation = 4, 3.0
+    rng, theta, beta = np.random.default_rng(42), np.array([1.0, 1.0]), np.full(len(SPAN), 0.1)
+    area = 0.5 * SPAN ** (-1 / 3)
+    correlations = np.exp(-np.abs(np.subtract.outer(np.log(SPAN), np.log(SPAN))) / correlation)
+    scale = 0.3 * SPAN**-0.6 * area
+    root = np.linalg.cholesky(np.outer(scale, scale) * correlations)
+    covered = []
+    for _ in range(300):
+        areas = area + rng.standard_normal((count + 1, len(SPAN))) @ root.T
+        noise = 0.005 * (area + beta)
+        rows = [
+            Row(load, a + b + u * rng.standard_normal(), u)
+            for load, a, b, u in zip(SPAN, areas[0], beta, noise, strict=True)
+        ]
+        drawn = [[_linear(a + b, (a, b)) for a in row] for row, b in zip(areas[1:].T, beta, strict=True)]
+        means = [mean_response(row) for row in drawn]
+        fitted = linear_fit(rows, means, working_variances(drawn, SPAN), scatter(drawn), 0.0, 1)
+        profile = profile_of(fitted, shares(rows, fitted, ()))
+        assert isinstance(profile, VaryingProfile)
+        excess = [profile.excess(axis, true) for axis, true in zip(np.eye(2), theta, strict=True)]
+        covered.append(np.array(excess) <= 0)
+    assert np.min(np.mean(covered, axis=0)) > 0.925

@@ -150,3 +150,28 @@ def test_small_transforms_have_one_thread(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setenv("OMP_NUM_THREADS", "3")
     assert transforms.threads(256 * 256) == 1
     assert transforms.threads(1024 * 1024) == 3
+
+
+_INNER = """
+import numpy as np
+from refimpl.grid import inner
+random = np.random.default_rng(1)
+for n in (9_999, 10_000, 10_001, 200_000):
+    print(inner(*random.standard_normal((2, 1, n))).hex())
+"""
+
+
+def test_inner_products_are_the_same_on_any_number_of_threads() -> None:
+    """On either side of the length from which OpenBLAS takes more of them, where BLAS's own differ."""
+    said = [
+        subprocess.run(
+            [sys.executable, "-c", _INNER],
+            env=os.environ | {"OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": threads},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for threads in ("1", "2")
+    ]
+    assert said[0] == said[1]
+    assert len(said[0].splitlines()) == 4

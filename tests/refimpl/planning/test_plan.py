@@ -226,3 +226,20 @@ def test_limits_of_the_process(which: str, left: int, system: Path, monkeypatch:
     )
     monkeypatch.setattr(psutil, "Process", lambda: process)
     assert free_memory() == left
+
+
+@pytest.mark.parametrize("share", [0.1, 0.9])
+def test_slopes_across_the_edge_of_a_flat_top_are_not_negligible(share: float) -> None:
+    """At a wall the common surface falls to the middle of the gap, whichever body is softer.
+
+    A frictionless square punch: without slope terms p_max is off by more than a fifth, the approach by 1 %.
+    """
+    x = np.abs((np.arange(64) + 0.5) / 64 - 0.5)
+    top = np.where(np.maximum(x[:, None], x) < 0.25, 0.0, -1e-5)
+    soft, stiff = (rf.Material(E=modulus, nu=0.3) for modulus in (1e11, 1e11 * share / (1 - share)))
+    punch, plane = rf.Body(stiff, rf.ArraySurface(top)), rf.Body(soft, rf.Flat())
+    scene = rf.Scene(upper=plane, lower=punch, friction=rf.Friction(), load=50.0, side=5e-4)
+    flat, planned = rf.solve(scene, 64, oblique=False), rf.solve(scene, 64)
+    assert planned.plan.includes("oblique")
+    assert flat.max_pressure > 1.2 * planned.max_pressure
+    assert abs(flat.approach - planned.approach) > 0.01 * planned.approach

@@ -141,3 +141,15 @@ def test_the_plain_reference_and_identification_know_the_papers_law_alone() -> N
         solve(scene(Limited()), grid=16, method="dense")
     with pytest.raises(InputError, match="whose tau and beta are found"):
         identify(scene(Limited()), [Row(1.0, 0.3, 0.01), Row(2.0, 0.25, 0.01), Row(3.0, 0.2, 0.01)], 16)
+
+
+def test_a_linear_law_of_another_form_has_the_bars_of_the_papers() -> None:
+    """As at a sliding velocity whose logarithm raises both tau and beta."""
+
+    class AtVelocity(Limited):
+        is_linear = True
+
+    papers, own = (
+        solve(scene(law), grid=32) for law in (rf.Friction(0.33e6, 0.22), AtVelocity(1.1 * 0.3e6, 1.1 * 0.2))
+    )
+    assert [own.error(name) for name in FRICTION] == pytest.approx([papers.error(n) for n in FRICTION])

@@ -17,6 +17,7 @@ from refimpl.scene.discretise import discretise
 from refimpl.solution.data_error import data_error, finest_by_data
 from refimpl.solution.domain_error import unseen_parts
 from refimpl.surfaces import Surface
+from tests import plate
 
 LENGTHS = (4e-3, 2e-3)
 
@@ -149,3 +150,21 @@ def test_the_closest_points_of_both_bodies_limit_the_grid_along_the_longer_side(
         bodies = rf.Body(soft, upper), rf.Body(soft, lower)
         scene = rf.Scene(*bodies, friction=rf.Friction(), load=1.0, size=(300e-6, 100e-6))
         assert finest_by_data(scene) == most
+
+
+def test_the_part_covers_maps_of_a_known_surface_and_tells_band_limited_ones() -> None:
+    """Self-affine to the pitch the data leave an error of mu, of waves above eight points a tenth of that."""
+    shares, errors = {}, {}
+    for points in (1, 8):
+        plate_ = plate.worn(seed=5, short_cut=points * plate.PITCH)
+        array = plate.sampled(plate_, plate.CLEAN, (96, 96))
+        known, mapped = (
+            rf.solve(plate.scene(surface, 0.5, (96, 96)), 288) for surface in (plate_, rf.ArraySurface(array))
+        )
+        mu = known.friction_coefficient_corrected
+        errors[points] = abs(mapped.friction_coefficient_corrected - mu) / mu
+        parts = mapped.uncertainty["friction_coefficient_corrected"]
+        shares[points] = parts["data"] / mu
+        assert abs(mapped.friction_coefficient_corrected - mu) < sum(parts.values())
+    assert errors[1] < shares[1] < 20 * errors[1]
+    assert shares[8] < shares[1] / 10

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import math
+import tempfile
 import tracemalloc
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import event, settings
+from hypothesis import given as drawn
+from hypothesis import strategies as st
 
 import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.measured.readers import read
 from refimpl.measured.reading import IMAGE
+from refimpl.measured.text_lines import NOT_MEASURED
 from refimpl.measured.text_tables import read_table
 from tests.refimpl.surfaces import instrument_writers as write
 from tests.refimpl.surfaces.instrument_writers import BOTH, MAP, NX, NY, PIXEL, same
@@ -186,3 +192,90 @@ def test_an_image_of_three_columns_is_no_table_of_points(tmp_path: Path) -> None
     (tmp_path / "a.txt").write_text("# Breite: 3,0 um\n# Höhe: 4,0 um\n" + "1 2 3\n" * 4)
     with pytest.raises(InputError, match="at least 4 an axis"):
         read(tmp_path / "a.txt", unit="um")
+
+
+@pytest.mark.parametrize("separator", [",", "\t", ";", " "])
+@pytest.mark.parametrize("mark", ["1.#QNAN", "#N/A"])
+def test_missing_points_that_begin_like_comments_keep_their_row(
+    tmp_path: Path, separator: str, mark: str
+) -> None:
+    """In all rows and in one; a comment follows the last number of a row or begins a line."""
+    for missing in ((range(5), 2), ([3], 0), ([1, 2], 4)):
+        z = 0.1 * np.arange(25.0).reshape(5, 5) % 0.7 + 0.11
+        z[missing] = np.nan
+        rows = [separator.join(mark if np.isnan(v) else f"{v:.2f}" for v in row) for row in z]
+        rows[1] += " # at 20 C"
+        (tmp_path / "a.txt").write_text("\n".join([*rows[:4], "# a comment, 5", rows[4]]))
+        np.testing.assert_allclose(read_table(tmp_path / "a.txt").rows, z, rtol=0, atol=1e-15)
+
+
+@drawn(st.data())
+@settings(deadline=None, max_examples=60)
+def test_random_tables_give_their_numbers_or_a_refusal(data: st.DataObject) -> None:
+    """Separators, missing marks, decimal commas, headers: the numbers, but for an empty first or last column.
+
+    Such a column is no other than a separator at the ends of all lines; it goes with a note. Even first rows
+    and columns are coordinates; numbers that may be of thousands are refused.
+    """
+    separator = data.draw(st.sampled_from(["\t", ";", ",", " ", ", "]))
+    comma = data.draw(st.booleans()) if "," not in separator else False
+    marks = [*NOT_MEASURED, "NaN", "BAD", "void", *([""] if separator != " " else [])]
+    shape = data.draw(st.integers(2, 7)), data.draw(st.integers(4, 7))
+    mark = data.draw(st.sampled_from(marks))
+    entry = st.floats(-1e3, 1e3, width=32).map(lambda v: round(v, 3)) | st.sampled_from([math.nan] * 3)
+    z = np.array([[data.draw(entry) for _ in range(shape[1])] for _ in range(shape[0])])
+    head = data.draw(
+        st.sampled_from(["", "Sample: plate 7\n", "# Width: 4 um\n\n", "a;b\nunit;um\n", "a b c d\n"])
+    )
+    lines = [separator.join(mark if math.isnan(v) else repr(float(v)) for v in row) for row in z]
+    text = "\n".join(line.replace(".", ",") if comma else line for line in lines)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "a.txt"
+        path.write_text(head + text + data.draw(st.sampled_from(["", "\n", "\n\n# end\n"])))
+        try:
+            found = read_table(path)
+        except InputError as refused:
+            event("refused")
+            if any(
+                word in str(refused)
+                for word in ("a thousand times as much", "their coordinates", "second column", "on a grid")
+            ):
+                return
+            assert mark == "void" or (np.isfinite(z).sum(axis=1) == 0).any() or not _paired(z)
+            return
+    if any("are x and y" in note for note in found.notes):
+        np.testing.assert_array_equal(found.rows[:, 2], z[1:, 1:].ravel())
+        return
+    event("read")
+    for side, column in (("last", -1), ("first", 0)):
+        if any(side in note for note in found.notes):
+            assert mark == ""
+            assert np.isnan(z[:, column]).all()
+            z = np.delete(z, column, axis=1)
+    np.testing.assert_array_equal(found.rows, z)
+
+
+def _paired(z: np.ndarray) -> bool:
+    """Two lines of numbers one after the other, or one at the end: where a table is seen to begin."""
+    some = np.isfinite(z).any(axis=1)
+    return bool((some[1:] & some[:-1]).any() or some[-1])
+
+
+@pytest.mark.parametrize("side", ["first row", "first column"])
+def test_uneven_coordinates_alone_are_refused(tmp_path: Path, side: str) -> None:
+    """Ten of them or more that rise steadily, beside heights that do not."""
+    rng = np.random.default_rng(5)
+    z = rng.normal(size=(14, 13))
+    at = np.cumsum(rng.uniform(0.5, 2.0, 14))[::-1]
+    np.savetxt(tmp_path / "plain.csv", z, fmt="%.3f", delimiter=",")
+    assert read_table(tmp_path / "plain.csv").rows.shape == (14, 13)
+    table = np.column_stack([at, z])
+    np.savetxt(tmp_path / "a.csv", table.T if side == "first row" else table, fmt="%.3f", delimiter=",")
+    with pytest.raises(InputError, match=f"heights without their coordinates .*{side}"):
+        read_table(tmp_path / "a.csv")
+
+
+def test_blank_lines_between_blocks_of_points_are_no_end(tmp_path: Path) -> None:
+    blocks = ["\n".join(f"{i} {j} {i - 2 * j}" for j in range(6)) for i in range(5)]
+    (tmp_path / "map.xyz").write_text("\n\n".join(blocks) + "\n")
+    assert read(tmp_path / "map.xyz", unit="um").heights.shape == (5, 6)

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from refimpl import InputError
+from refimpl.scene import key_texts
 from refimpl.scene.keys import REQUIRED, SAMPLES, sample_scene, scene_keys
 from refimpl.scene.scene_file import _OPTIONAL_KEYS, _SCENE_KEYS, scene_from_dict
 from refimpl.surfaces import surface_from_dict
@@ -42,6 +43,12 @@ def test_all_keys_that_a_file_may_have_are_there() -> None:
         surface_from_dict({"kind": "self_affine", "none": 1})
     listed = refused.value.allowed.partition(": ")[2].split(", ")
     assert [key.name for key in TABLES["surface, self_affine"]] == listed
+
+
+def test_a_table_of_no_surface_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(key_texts.SURFACES, "bogus", {})
+    with pytest.raises(LookupError, match="bogus"):
+        scene_keys()
 
 
 def test_required_keys_are_those_that_cannot_be_missing() -> None:

@@ -16,8 +16,10 @@ START_SECONDS = 60.0
 
 
 @contextmanager
-def cluster(folder: Path, environment: Mapping[str, str], *, drop: tuple[str, ...]) -> Iterator[str]:
-    """Address of a cluster of one worker of one thread.
+def cluster(
+    folder: Path, environment: Mapping[str, str], *, drop: tuple[str, ...]
+) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
+    """Address and scheduler of a cluster of one worker of one thread.
 
     ``environment`` is added to this process's, without ``drop``.
     """
@@ -39,7 +41,7 @@ def cluster(folder: Path, environment: Mapping[str, str], *, drop: tuple[str, ..
         connect: Any = distributed.Client  # untyped
         with connect(address, timeout=START_SECONDS) as client:
             client.wait_for_workers(1, timeout=START_SECONDS)
-        yield address
+        yield address, made[0]
     finally:
         for process in made:
             process.kill()

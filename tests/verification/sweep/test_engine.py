@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from refimpl.errors import InputError
-from tests.verification.cli.children import finished
+from tests.verification.cli.children import Ended, finished, one_line
 from tests.verification.cli.commands import refused, shown
 from tests.verification.sweep.own_cluster import cluster
 from verification.framework.threads import THREADS, limited_to_one_thread
@@ -165,7 +165,7 @@ def test_a_cluster_gives_the_same_bytes(tmp_path: Path) -> None:
     """Its worker was not limited to one thread: its BLAS has as many as there are cores."""
     (tmp_path / "study.toml").write_text(STUDY.replace("10", "1") + '[solve]\nmethod = "dense"\n')
     study = f"{tmp_path}/study.toml"
-    with cluster(tmp_path, {"OMP_NUM_THREADS": "3"}, drop=THREADS) as address:
+    with cluster(tmp_path, {"OMP_NUM_THREADS": "3"}, drop=THREADS) as (address, _):
         tail = f"--store {tmp_path}/c.sqlite --csv {tmp_path}/c.csv"
         assert "finished now        4" in shown(f"sweep {study} --scheduler {address} {tail}")
     here = engine.sweep(read_study(study), tmp_path / "h.sqlite", workers=0)
@@ -178,6 +178,28 @@ def test_a_scheduler_that_is_not_there(address: str, tmp_path: Path, monkeypatch
     (tmp_path / "study.toml").write_text(STUDY)
     refused(f"sweep {tmp_path}/study.toml --scheduler {address} --store {tmp_path}/s.sqlite", "--scheduler")
     assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
+
+
+@pytest.mark.nightly
+def test_a_lost_scheduler_is_one_line_and_the_sweep_goes_on_later(tmp_path: Path) -> None:
+    """Of 400 runs two are finished when it is killed."""
+    (tmp_path / "study.toml").write_text('scene = "table1-rough"\nrealisations = 400\n[vary]\ngrid = [12]\n')
+    code = "from verification.cli import main; raise SystemExit(main())"
+    with cluster(tmp_path, {"OMP_NUM_THREADS": "1"}, drop=THREADS) as (address, scheduler):
+        tail = ["sweep", "study.toml", "--store", "s.sqlite", "--scheduler", address]
+        child = subprocess.Popen(
+            [sys.executable, "-c", code, *tail], cwd=tmp_path, text=True, stderr=subprocess.PIPE
+        )
+        deadline = time.monotonic() + 60
+        while finished(tmp_path / "s.sqlite") < 2 and time.monotonic() < deadline:
+            time.sleep(0.02)
+        scheduler.kill()
+        _, err = child.communicate(timeout=120)
+    one_line(Ended(child.returncode, err), "the scheduler")
+    kept = finished(tmp_path / "s.sqlite")
+    assert 2 <= kept < 400
+    again = engine.sweep(small(kept, (12,)), tmp_path / "s.sqlite", workers=0)
+    assert (again.found, len(again.rows)) == (kept, kept)
 
 
 LIMITED = """

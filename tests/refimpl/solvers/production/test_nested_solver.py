@@ -168,3 +168,20 @@ def test_a_start_on_the_same_grid_is_used_where_it_is_off_by_one_per_cent(
     start = guess._replace(pressure=factor * guess.pressure, displacement=factor * guess.displacement)
     found = solve_fft(problem, 1e-6, Counter(), start)
     assert ("CG at 16 x 16" in found.iterations) is (abs(factor - 1) > 0.02)
+
+
+STEEP = rf.Scene(
+    upper=rf.Body(rf.Material(50e9, 0.2), rf.Sphere(2.4e-3) + rf.GaussianRoughness(3.3e-6, 51e-6, seed=4344)),
+    lower=rf.Body(rf.Material(2.8e9, 0.24), rf.GaussianRoughness(3.3e-6, 74e-6, seed=4345)),
+    friction=rf.Friction(tau=1.1e6, beta=0.32),
+    load=40.0,
+    side=1e-3,
+)
+
+
+def test_steep_slopes_converge_on_fine_grids() -> None:
+    """Their feedback grows with displacement over spacing; relaxed updates stagnated from 256 on."""
+    coarse, fine = (rf.solve(STEEP, M) for M in (128, 256))
+    assert coarse.status is fine.status is rf.Status.CONVERGED
+    assert fine.friction_coefficient == pytest.approx(coarse.friction_coefficient, rel=0.01)
+    assert fine.cost.iterations["CG at 256 x 256"] < 200
