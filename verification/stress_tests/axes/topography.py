@@ -25,7 +25,8 @@ OFFSETS = [2.0**k for k in range(0, 61, 6)]
 AMPLIFIED = 30.0
 """Error allowed over the data's own, the rounding of heights at an offset over their range. Heights off by e
 change the M^2 pressures by up to M e / (1.82 u) of the peak: 1.82 is the least eigenvalue of the flexibility,
-u the displacement by one element under the peak, a tenth of the range here: 27. Measured above rounding: 3.6."""
+u the displacement by one element under the peak, a tenth of the range here: 27. At most 3.6 is
+measured above rounding."""
 
 
 def rough_ball(heights: Array, radius: float = 0.14, load: float = 1.0) -> rf.Scene:
