@@ -19,9 +19,7 @@ from refimpl.scene.scene import Body, Scene
 MAX_ROWS, MAX_BYTES = 1000, 1_000_000
 MIXED_FRICTION = 50.0  # ratio of two rows' mu from which one of them is taken to be in kN
 MOST_FRICTION = 10.0  # mu of half of the rows: rubber under its own weight
-LIKE_MU = (
-    2.0  # of most dry contacts; where all loads (N) are below it and all mu above, columns are exchanged
-)
+LIKE_MU = 2.0  # mu of most dry contacts is below; loads (N) below beside mu above are exchanged columns
 SWAPPED = 5.0  # ratio of friction at two loads against any law
 MIXED_LOADS = 300.0  # ratio of neighbouring loads, the same: no loading series leaves such a gap
 _FRICTION = {"mu": "u_mu", "friction_force": "u_friction_force"}

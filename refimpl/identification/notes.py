@@ -19,7 +19,7 @@ from refimpl.solution.model_warning import Limit
 
 _SETTLED = 0.5  # standard uncertainties by which the last solves may differ from their prediction
 _UNITS = (9.81, *(10.0**n for n in range(1, 7)), 25.4, 180 / math.pi)  # kgf, powers of ten, inches, degrees
-_NEAR = 0.1  # of such a factor: a wrong load changes the fit's mu as well
+_NEAR = 0.1  # relative, from such a factor: a wrong load changes the fit's mu as well
 _LEAST, _FULL = 0.005, 0.99  # A/A0 at every load; a ball's contact of 0.005 is 0.08 of the side wide
 
 
