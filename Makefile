@@ -19,13 +19,16 @@ report: $(READY)
 	exit $$status
 
 # The committed results of cases: one run of the full tier, divided by the rows of reports/results/README.md, and one
-# of the quick tier. The commands of the other files, which are no cases, stand there too.
+# of the quick tier. The commands of the other files, which are no cases, stand there too. Cases that fail are results,
+# and the status of `make`.
 results: $(READY)
 	@mkdir -p $(OUT)
-	$(BIN)/rough-friction verify --tier full --jobs 2 --json $(OUT)/full.json
-	$(BIN)/python -m verification.framework.divided $(OUT)/full.json
-	$(BIN)/rough-friction verify --tier quick --jobs 2 --json reports/results/quick.json.gz
-	$(BIN)/python -m reports.results_page
+	@rm -f $(OUT)/full.json; status=0; \
+	$(BIN)/rough-friction verify --tier full --jobs 2 --json $(OUT)/full.json || status=$$?; \
+	$(BIN)/python -m verification.framework.divided $(OUT)/full.json || exit $$?; \
+	$(BIN)/rough-friction verify --tier quick --jobs 2 --json reports/results/quick.json.gz || status=$$?; \
+	$(BIN)/python -m reports.results_page || status=$$?; \
+	exit $$status
 
 # Ruff and mypy beside the tests; the verdicts of both count.
 test: $(READY)

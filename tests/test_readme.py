@@ -108,6 +108,33 @@ def test_what_is_said_of_other_numbers_is_of_the_study() -> None:
     assert f"On 40 scenes they cover: {said}." in PAGE_OF_BARS
 
 
+def test_what_dimpled_flats_miss_is_of_the_study() -> None:
+    """Errors of the rows are shares of the computed number; all of these are too small."""
+    study = committed("coverage_corrected")
+    rows = [row for row in study["rows"] if row["class"] == "capped dimples" and not row["too_large"]]
+    plastic, mu = (
+        [row for row in rows if row["number"] == number]
+        for number in ("plastic_area", "friction_coefficient_corrected")
+    )
+    (covered,) = (
+        row["held"]
+        for row in study["table"]
+        if (row["class"], row["number"]) == ("capped dimples", "plastic_area")
+    )
+    missed = [row["error"] / (1 + row["error"]) for row in plastic]
+    most = sum(share >= 2 / 3 for share in missed)
+    assert max(missed) > 0.95
+    assert f"plastic area of dimpled flats | {100 * covered:.0f} % cover; a grid" in PAGE_OF_BARS
+    assert f"nearly all of it: {most} of {len(missed)} scenes miss two thirds or more" in PAGE_OF_BARS
+    worst = max(mu, key=lambda row: row["error"] / row["bar"])
+    error = worst["error"]
+    assert f"one error was {error / worst['bar']:.1f} times its bar, on a capped dimpled" in PAGE_OF_BARS
+    assert (
+        f"mu on {worst['M']} elements was {100 * error / (1 + error):.0f} % below the reference, "
+        f"{100 * error:.0f} % of itself"
+    ) in PAGE_OF_BARS
+
+
 def test_the_gain_of_the_correction_is_that_of_the_study() -> None:
     """Quotients of the classes' medians of error and bar, summed over corrected: their median."""
     study = committed("coverage_corrected")

@@ -36,7 +36,6 @@ from appendix_a.fem3d.patch import tangential_coefficient
 from appendix_a.fem3d.wavy import Kind, Waviness
 
 Array = NDArray[np.float64]
-EULER = float(np.euler_gamma)
 GAUSS = 24  # points a side over the patch; 48 change no part by more than 1e-4 of itself
 
 
@@ -97,23 +96,3 @@ def far_part(surface: Waviness, x: Array, y: Array, nu: float) -> Array:
 def first_order(surface: Waviness, x: Array, y: Array, nu: float) -> Array:
     """Return wavy minus flat displacement (m,) at (x, y), first order: `facet_part` + `far_part`."""
     return facet_part(surface, x, y, nu) + far_part(surface, x, y, nu)
-
-
-def growth_coefficient(nu: float) -> float:
-    """Return (1 - 2 nu)^2 / (4 (1 - nu)): the number in `growth`.
-
-    >>> round(growth_coefficient(0.3), 4)
-    0.0571
-    """
-    return (1 - 2 * nu) ** 2 / (4 * (1 - nu))
-
-
-def growth(surface: Waviness, x: Array, y: Array, nu: float) -> Array:
-    """Return the part (m,), over flat, that grows with offset / wavelength; k r small.
-
-    -growth_coefficient(nu) kappa r [ln(2 / (k r)) - gamma + x^2 / r^2], kappa the curvature midway to (x, y).
-    """
-    k, r = surface.wavenumber, np.hypot(x, y)
-    curvature = -k * k * surface.height(0.5 * x, 0.5 * y)
-    shape: Array = r * (np.log(2 / (k * r)) - EULER + x * x / (r * r))
-    return -growth_coefficient(nu) * curvature * shape

@@ -14,8 +14,8 @@ import refimpl as rf
 from appendix_a.errors import InputError
 from refimpl.planning.plan import Method
 from verification.exact import lawful_states
-from verification.stress_tests.oracle import NotSettled, Oracle
-from verification.stress_tests.state import EXISTS, Extreme, Judged, Verdict, number
+from verification.stress_tests.oracle import EXACT, NotSettled, Oracle
+from verification.stress_tests.state import EXISTS, NO_STATE, NOT_FOUND, Extreme, Judged, Verdict, number
 
 TOLERANCE = 1e-10
 """Tolerance of every solve, a hundredth of the default: larger errors belong to the state."""
@@ -81,7 +81,7 @@ def by_oracle(scene: rf.Scene, elements: int, method: Method = "fft", **options:
         error, note = np.inf, ""
     if solution.status not in GOOD:
         note = sought(scene, elements, **options)
-    return verdict(solution, error, "the exact discrete state, 34 digits", note)
+    return verdict(solution, error, EXACT, note)
 
 
 def sought(scene: rf.Scene, M: int, **options: Any) -> str:
@@ -89,9 +89,11 @@ def sought(scene: rf.Scene, M: int, **options: Any) -> str:
     try:
         Oracle(scene, M, **options).continued()
     except NotSettled as unsettled:
-        if options == {"oblique": False} and not scene.periodic and lawful_states.none_is_lawful(scene, M):
-            return "no state exists: integer programming over all contact sets"
-        return f"continuation finds no state: {unsettled}"
+        if options.get("oblique", True):
+            return f"{NOT_FOUND}: {unsettled}"
+        half_space = options == {"oblique": False} and not scene.periodic
+        proved = half_space and lawful_states.none_is_lawful(scene, M)
+        return NO_STATE if proved else f"not decided: {unsettled}"
     return EXISTS
 
 

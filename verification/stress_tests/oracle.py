@@ -25,6 +25,7 @@ from refimpl.grid import Array, Mask
 from verification.exact import exact_operators as operators
 from verification.exact.exact_operators import DIGITS, Exact
 
+EXACT = "the exact discrete state, 34 digits"
 STEPS, REFINEMENTS = 60, 20  # at most: steps of Newton in doubles, and in digits
 CLOSE, SETTLED = 1e-8, 1e-20  # largest last step: relative to the state; in digits, below a double's
 TIE = 1e-26  # share of the maximum pressure or gap: signs nearer to zero are ties

@@ -9,10 +9,12 @@ from enum import StrEnum
 
 DIGITS_MOST = 17.0
 """Digits given to an error of exactly zero: a double holds 15.95."""
-NO_DIGITS = 1e-2
-"""Relative error of the input itself from which on nothing is left to judge by."""
+NO_DIGITS = 3e-3
+"""Relative error of the input beyond which nothing is right: results may change by 30 times that, a tenth."""
 EXISTS = "a state exists: found by continuation"
-"""Note on a state that no solver found."""
+NO_STATE = "no state exists: integer programming over all contact sets"
+NOT_FOUND = "continuation finds no state"
+"""Notes on a state that no solver found; the second proves it, the third is said of states with slopes."""
 
 
 class Verdict(StrEnum):

@@ -26,8 +26,17 @@ from verification.stress_tests import conditioning, judge, limits, study
 from verification.stress_tests.__main__ import main
 from verification.stress_tests.axes import AXES, grids, states, topography
 from verification.stress_tests.axes.contacts import on, sheared
-from verification.stress_tests.oracle import Exactly, Guess, NotSettled, Oracle
-from verification.stress_tests.state import EXISTS, Extreme, Judged, Verdict, number
+from verification.stress_tests.oracle import EXACT, Exactly, Guess, NotSettled, Oracle
+from verification.stress_tests.state import (
+    EXISTS,
+    NO_DIGITS,
+    NO_STATE,
+    NOT_FOUND,
+    Extreme,
+    Judged,
+    Verdict,
+    number,
+)
 
 pytestmark = pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")
 ALL = [unique for name in AXES for unique, _ in states(name)]
@@ -53,8 +62,11 @@ def test_the_committed_study_names_every_failure_once_and_nothing_else() -> None
             unused -= {shown[0].rule, *(glob for glob in shown[0].states if fnmatchcase(row["id"], glob))}
         exists = row["kind"] in (limits.Kind.BEYOND, limits.Kind.MISSED) and row["axis"] != "wedge"
         assert (row["note"] == EXISTS) == exists, row["id"]
-        assert row["verdict"] != "unjudged" or row["data"]["lost"] > 1e-2, row["id"]
+        assert row["verdict"] != "unjudged" or row["data"]["lost"] > NO_DIGITS, row["id"]
+        assert row["verdict"] != "right" or "lost" not in row["data"] or row["limit"] <= 0.1, row["id"]
     assert not unused
+    (ridge,) = (row for row in found["states"] if row["id"] == "grid/ridge of 24 elements, fft/16 across")
+    assert float(ridge["note"].split()[-2]) < 1e-9  # both solvers return it alike, as its limit says
 
 
 @pytest.mark.parametrize("limit", limits.LIMITS, ids=lambda limit: limit.what)
@@ -139,6 +151,8 @@ def test_what_stands_behind_a_state_that_no_solver_finds() -> None:
     assert judge.sought(sheared(1.0, 0.0), 5, oblique=False).startswith("a state exists")
     assert judge.sought(sheared(100.0, 0.0), 5, oblique=False).startswith("no state exists: integer")
     assert judge.sought(sheared(100.0, 0.0), 5).startswith("continuation finds no state")
+    periodic = replace(sheared(100.0, 0.0), periodic=True)
+    assert judge.sought(periodic, 5, oblique=False).startswith("not decided")
 
 
 @pytest.mark.parametrize("block", [0, 24, 25, 75], ids=["pressure", "gap", "tangent", "approach"])
@@ -323,6 +337,16 @@ def test_the_command_runs_an_axis(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         main(["--json", str(path), "--axis", "nonsense"])
 
 
+@pytest.mark.parametrize("wrong", [0, 1])
+def test_a_converged_contact_that_is_not_lawful_counts_in_the_status(
+    wrong: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    counted = lawful_states.Count(0.0, 0, 1, 0, 1, {"fft": {}, "dense": {}}, wrong)
+    monkeypatch.setattr(lawful_states, "count", lambda tau: counted)
+    monkeypatch.setattr(study.conditioning, "GRIDS", (2, 3))
+    assert main(["--json", str(tmp_path / "e.json"), "--axis", "kernel"]) == wrong
+
+
 TAU = "friction/tau, fft/tau/f = 5.62"
 
 
@@ -350,19 +374,23 @@ def test_a_state_that_is_not_solved_has_a_kind(unique: str, kind: str | None) ->
 @pytest.mark.parametrize(
     ("error", "share", "note", "named"),
     [
-        (1e-9, 0.6, "", True),
+        (1e-9, 0.6, NO_STATE, True),
+        (1e-9, 0.6, f"{NOT_FOUND}: no route", True),
+        (1e-9, 0.6, "", False),
+        (1e-9, 0.6, "not decided: no route", False),
         (1e-9, 0.6, EXISTS, False),
-        (1e-9, 0.5, "", False),
-        (1e-3, 0.6, "", False),
-        (None, 1.0, "", False),
+        (1e-9, 0.5, NO_STATE, False),
+        (1e-3, 0.6, NO_STATE, False),
+        (None, 1.0, NO_STATE, False),
     ],
 )
 def test_elements_without_tau_are_counted_in_the_state(
     error: float | None, share: float, note: str, named: bool
 ) -> None:
-    found = Judged(Verdict.DETECTED, "iteration limit", error, 1e-6, "x", note, {"without tau": share})
+    found = Judged(Verdict.DETECTED, "iteration limit", error, 1e-6, EXACT, note, {"without tau": share})
     assert study.kind_of(TAU, found) == (limits.Kind.EXCLUDED.value if named else None)
     assert study.kind_of("a/b/c", found) == study.kind_of(TAU, found)
+    assert study.kind_of(TAU, replace(found, oracle="the dense solver")) is None  # a second solver of ours
 
 
 def test_a_state_under_an_approach_is_sought_too() -> None:
@@ -381,6 +409,14 @@ def test_heights_without_digits_are_no_problem_to_judge(offset: float, verdict: 
     judged = topography.shifted(offset, dyadic=False, method="fft")
     assert judged.verdict is verdict
     assert (study.kind_of("a/b/c", judged) == limits.Kind.NO_PROBLEM) == (verdict is Verdict.UNJUDGED)
+
+
+@pytest.mark.parametrize("offset", [2.0**42, 2.0**48])
+def test_an_error_beyond_that_of_the_data_is_wrong(offset: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(topography, "change", lambda there, here: 1.0)
+    judged = topography.shifted(offset, dyadic=False, method="fft")
+    assert judged.verdict is Verdict.WRONG
+    assert study.kind_of("a/b/c", judged) is None
 
 
 @pytest.mark.parametrize(
@@ -404,4 +440,6 @@ def test_a_solver_is_not_blamed_for_its_judge(
         return changed(found, status=rf.Status.ITERATION_LIMIT) if failed else found
 
     monkeypatch.setattr(rf, "solve", failing)
-    assert judge.judged(partial(grids.against_dense, grids.ridge(6, 2), 6)).verdict == verdict
+    judged = judge.judged(partial(grids.against_dense, grids.ridge(6, 2), 6))
+    assert judged.verdict == verdict
+    assert (judged.error is None) == ("dense" in fails)  # nothing is measured by a reference that failed
