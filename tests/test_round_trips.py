@@ -61,7 +61,7 @@ KNOWN = {
     ("MeasuredSurface", "missing"): st.just("refuse"),
     ("MeasuredSurface", "max_missing"): SHARES.filter(lambda share: share != 0.05),
     ("MeasuredSurface", "mirror"): st.sampled_from(["x", "y"]),
-    ("MeasuredSurface", "rotate_deg"): st.sampled_from([90, 180, 270]),
+    ("MeasuredSurface", "rotate_deg"): st.sampled_from([90.0, 180.0, 270.0]),
     ("MeasuredSurface", "height_scale"): st.floats(0.9, 0.99),
     ("MeasuredSurface", "centre"): st.tuples(LENGTHS, LENGTHS),
     ("Material", "E"): st.floats(1e6, 1e12),

@@ -19,6 +19,16 @@ def usable(error: float, scale: float) -> bool:
     return error <= LARGEST_SHARE * abs(scale)
 
 
+def digits_beside(value: float, limit: float) -> str:
+    """Return a number with two significant digits, or as many as show on which side of a limit it is.
+
+    >>> digits_beside(2.97, 3.0), digits_beside(2.7134, 3.0), digits_beside(2.9996, 3.0)
+    ('2.97', '2.7', '2.9996')
+    """
+    texts = (f"{value:.{digits}g}" for digits in range(2, 18))
+    return next((text for text in texts if (float(text) - limit) * (value - limit) > 0), f"{value:.2g}")
+
+
 def digits_of(value: float, error: float | None) -> str:
     """Return a number rounded to the last digit of its bar: at most six digits, two if the bar is longer.
 

@@ -90,7 +90,8 @@ class Options:
         most = hardness * scene.lengths[0] * scene.lengths[1]
         allowed = (
             f"at most {most:.6g} N, the softer body's hardness, {hardness:.4g} Pa, times the nominal area "
-            "(1 HV is 10.6e6 Pa, 1 GPa 1e9 Pa; or plastic = false)"
+            f"({'load in mN? ' if 1e-3 * scene.load <= most else ''}"
+            "1 HV is 10.6e6 Pa, 1 GPa 1e9 Pa; or plastic = false)"
         )
         if max(scene.lengths) < _SMALL_DOMAIN:
             size = f"the domain is only {size_text(scene.lengths)} m (units of the map, or its pixel?)"

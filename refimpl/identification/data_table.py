@@ -19,6 +19,7 @@ from refimpl.scene.scene import Body, Scene
 MAX_ROWS, MAX_BYTES = 1000, 1_000_000
 MIXED_FRICTION = 50.0  # ratio of two rows' mu from which one of them is taken to be in kN
 MOST_FRICTION = 10.0  # mu of half of the rows: rubber under its own weight
+LIKE_MU = 2.0  # mu of most dry contacts is below; loads (N) below beside mu above are exchanged columns
 SWAPPED = 5.0  # ratio of friction at two loads against any law
 MIXED_LOADS = 300.0  # ratio of neighbouring loads, the same: no loading series leaves such a gap
 _FRICTION = {"mu": "u_mu", "friction_force": "u_friction_force"}
@@ -97,6 +98,8 @@ def read_rows(table: str | Path | Any) -> tuple[Row, ...]:
     header = cells[0][1]
     quantity = _check_header(header)
     rows = tuple(_row(header, quantity, name, line, folder, decimal) for name, line in cells[1:])
+    if quantity == "mu":
+        _refuse_exchanged(rows)
     return check_rows(rows)
 
 
@@ -221,6 +224,22 @@ def _refuse_mixed_loads(rows: Sequence[Row]) -> None:
         raise InputError(
             "data: load", f"{named}, {jump:.0f} times from the next", "loads in N (mN, kN mixed?)"
         )
+
+
+def _refuse_exchanged(rows: Sequence[Row]) -> None:
+    """Refuse loads that are all as small as mu, beside values of mu that are all larger and vary more.
+
+    Soft adhesive bodies under light loads have such a mu, but it varies less than the load does.
+    """
+    if not rows:
+        return
+    (least, most), (low, high) = (
+        (min(values), max(values)) for values in ([row.load for row in rows], [row.mu for row in rows])
+    )
+    if most < LIKE_MU < low and high / low > most / least:
+        said = f"load {least:.3g} to {most:.3g}, mu {low:.3g} to {high:.3g}"
+        allowed = f"mu below {LIKE_MU:g} (are the columns load and mu exchanged? mu in per cent?)"
+        raise InputError("data: load and mu", said, allowed)
 
 
 def _refuse_swapped(rows: Sequence[Row]) -> None:

@@ -18,6 +18,8 @@ from refimpl.identification.result import WIDE, Identification
 from refimpl.solution.model_warning import Limit
 
 _SETTLED = 0.5  # standard uncertainties by which the last solves may differ from their prediction
+_UNITS = (9.81, *(10.0**n for n in range(1, 7)), 25.4, 180 / math.pi)  # kgf, powers of ten, inches, degrees
+_NEAR = 0.1  # relative, from such a factor: a wrong load changes the fit's mu as well
 _LEAST, _FULL = 0.005, 0.99  # A/A0 at every load; a ball's contact of 0.005 is 0.08 of the side wide
 
 
@@ -98,7 +100,18 @@ def _residuals(result: Identification) -> Iterator[str]:
         load, deviation = result.rows[k].load, result.deleted[k]
         away = f"{deviation:+.1f} standard uncertainties"
         text = f"row {k + 1} ({load:.4g} N) is off by {away} from the fit to the other rows"
-        yield text + ", and dropped from it: check its units" * (k == result.fitted.dropped)
+        if k == result.fitted.dropped:
+            text += f", and dropped from it: {_off_by(result.rows[k].mu, result.fitted.predicted[k])}"
+        yield text
+
+
+def _off_by(mu: float, predicted: float) -> str:
+    """Return how far a row is off, and whether units may be why."""
+    if not mu * predicted > 0:
+        return f"its mu is {mu:.3g}, the fit's {predicted:.3g}"
+    factor = max(mu / predicted, predicted / mu)
+    units = any(abs(factor / unit - 1) < _NEAR for unit in _UNITS)
+    return f"its mu is {mu / predicted:.3g} times the fit's" + "; check its units" * units
 
 
 def _model(result: Identification) -> Iterator[str]:

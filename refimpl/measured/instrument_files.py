@@ -54,9 +54,9 @@ def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
     library = library_for(path)
     if is_container(path):
         return _of_container(library, path, given)
-    formats = _formats(library, path, head)
+    claiming, others = _formats(library, path, head)
     failures = []
-    for name in formats:
+    for name in claiming or others:
         try:
             return read_as(library, path, name, given, *rewritten(path, name, given))
         except InputError:
@@ -65,8 +65,12 @@ def read_instrument(path: Path, given: Overrides, head: bytes) -> RawHeights:
             failures.append(f"{name}: {first_line(error)}")
     if kind := kind_of(path, head):
         raise unreadable(path, kind)
-    likely = failures[0] if failures else f"none of SurfaceTopography {library.__version__}'s formats fits"
-    raise unreadable(path, f"a file that can be read ({likely})")
+    if claiming:
+        raise unreadable(path, f"a file that can be read ({failures[0]})")
+    formats = f"a format of SurfaceTopography {library.__version__}"
+    raise unreadable(
+        path, f"a map of heights: {path.name} is neither text (UTF-8, UTF-16, Latin-1) nor {formats}"
+    )
 
 
 def claimed_by_magic(path: Path, head: bytes) -> bool:
@@ -79,8 +83,8 @@ def claimed_by_magic(path: Path, head: bytes) -> bool:
     return any(r.can_read(head[:512]) == yes for r in library.IO.readers if r.format() not in TEXT_FORMATS)
 
 
-def _formats(library: ModuleType, path: Path, head: bytes) -> list[str]:
-    """Return the formats of the mark, then of the suffix; else all that do not take any bytes."""
+def _formats(library: ModuleType, path: Path, head: bytes) -> tuple[list[str], list[str]]:
+    """Return the formats of the mark, then of the suffix; and all others that do not take any bytes."""
     match, suffix = library.IO.MagicMatch, path.suffix.lower()[1:]
     marked, own, others = [], [], []
     for reader in library.IO.readers:
@@ -93,7 +97,7 @@ def _formats(library: ModuleType, path: Path, head: bytes) -> list[str]:
             own.append(name)
         elif answer == match.MAYBE and name not in MARKLESS:
             others.append(name)
-    return marked + own or others
+    return marked + own, others
 
 
 def read_as(

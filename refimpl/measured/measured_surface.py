@@ -37,8 +37,9 @@ class MeasuredSurface(Surface):
        the file, are levelled one by one; ``low_pass`` and ``high_pass`` (m) filter the whole map;
     2. orientation: heights point out of the material, x to the right and y up as seen from outside.
        ``replica=True`` negates them; ``mirror="x"`` or ``"y"`` mirrors (x -> -x, y -> -y); ``rotate_deg``
-       (0, 90, 180, 270) turns them anticlockwise; ``turn_over`` turns the specimen over about the x axis,
-       z(x, y) -> -z(x, -y), by default where it is the upper body;
+       turns them anticlockwise (unless by quarters interpolated, in the largest rectangle inside);
+       ``turn_over`` turns the specimen over about the x axis, z(x, y) -> -z(x, -y), by default where it is
+       the upper body;
     3. window: the scene's domain about ``centre`` (m from the corner of the file's own area, by default its
        middle), moved by the offset; refused where it leaves that area, in which each point counts as one
        pixel. A map that ``repeats`` with its own area (m) has no border;
@@ -70,7 +71,7 @@ class MeasuredSurface(Surface):
     max_missing: float = field(default=0.05, kw_only=True)
     replica: bool = field(default=False, kw_only=True)
     mirror: str | None = field(default=None, kw_only=True)
-    rotate_deg: int = field(default=0, kw_only=True)
+    rotate_deg: float = field(default=0.0, kw_only=True)
     turn_over: bool | None = field(default=None, kw_only=True)
     centre: tuple[float, float] | None = field(default=None, kw_only=True)
     repeats: bool = field(default=False, kw_only=True)
@@ -94,8 +95,8 @@ class MeasuredSurface(Surface):
         require_size("height_scale", self.height_scale, "a positive factor on heights (z calibration)")
         check_level(self.level, self.repeats)
         check_preparation(self.channel, self.outliers, self.scan_lines, self.low_pass, self.high_pass)
-        check_orientation(self.mirror, self.rotate_deg, self.turn_over)
-        object.__setattr__(self, "rotate_deg", int(self.rotate_deg))
+        check_orientation(self.mirror, self.rotate_deg, self.turn_over, self.repeats)
+        object.__setattr__(self, "rotate_deg", float(self.rotate_deg))
         if self.centre is not None:
             object.__setattr__(self, "centre", checked_centre(self.centre))
         require_one_of("missing", self.missing, ("fill", "refuse"))
@@ -253,7 +254,7 @@ class MeasuredSurface(Surface):
         return "its middle" if self.centre is None else f"({self.centre[0]:g}, {self.centre[1]:g}) m"
 
     def pitch(self, lengths: tuple[float, float]) -> float:
-        return min(self.reading.pixel)
+        return min(self._oriented.reading.pixel)
 
     def data_points(self, grid: Grid) -> tuple[Array, tuple[float, float]]:
         return self._central(grid.lengths)[2], self._oriented.reading.pixel
@@ -263,7 +264,7 @@ class MeasuredSurface(Surface):
         name, window = self._file.name, self._crop(grid.lengths)
         z, form, rest = self._central(grid.lengths)
         pixel = self._oriented.reading.pixel
-        said = [f"{name}: {note}" for note in self.prepared.notes]
+        said = [f"{name}: {note}" for note in self._oriented.reading.notes]
         if self.level != "none":
             tilt = size_text(slope / edge for slope, edge in zip(form.slopes, pixel, strict=True))
             bent = "" if form.radius is None else f", radius {form.radius:.4g} m"

@@ -96,7 +96,11 @@ def _plain(
 def _text(path: Path, given: Overrides, head: bytes) -> RawHeights:
     if kind := kind_of(path, head):
         raise unreadable(path, kind)
-    table = read_table(path)
+    try:
+        table = read_table(path)
+    except UnicodeError as error:
+        allowed = f"text in UTF-8, UTF-16 or Latin-1: {path.name} begins as UTF-16, but its bytes are none"
+        raise unreadable(path, allowed) from error
     rows, columns = table.rows.shape
     if path.suffix.lower() == ".xyz" and columns not in (2, 3):
         raise unreadable(path, f"points in two or three columns (found {columns})")

@@ -311,8 +311,8 @@ def _centred(name: str, heights: Array, grid: Grid) -> Array:
             f"{name}.surface",
             f"peak-to-valley {high - low:.3g} m",
             f"heights in m whose peak-to-valley is at most the longer side, {side:.3g} m (unit of heights, "
-            "or of pixel and side? Without slope terms, heights and approach times s with moduli over s have "
-            "the same pressures)",
+            "or of pixel_size and side? Without slope terms, heights and approach times s with moduli over s "
+            "have the same pressures)",
         )
     heights -= low + 0.5 * (high - low)
     return heights

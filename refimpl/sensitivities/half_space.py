@@ -108,21 +108,32 @@ def _solved(scene: Scene, solution: Solution, approach: float | None) -> Solutio
 
 
 def advice(error: HalfSpaceError, solution: Solution) -> str:
-    """Return advice by the rule of docs/half-space-limits.md: keep, correct, or finite elements."""
+    """Return advice by the rule of docs/half-space-limits.md for each number: keep, correct, finite elements.
+
+    One sentence where all numbers may be kept, or where slopes are beyond those judged.
+    """
     names = "friction_coefficient", "contact_area", "max_pressure", "approach", "normal_force"
     size = {name: abs(getattr(solution, name)) for name in names}
     size["approach"] = abs(solution.approach + solution.details.problem.datum)
     stated = {name: error.stated(name) / value for name, value in size.items() if value}
-    worst = max(stated, key=lambda name: stated[name])
-    left = max((error.second_order[name] + error.finite_strain[name]) / size[name] for name in stated)
     slope = math.degrees(math.atan(math.sqrt(steepness(solution.details.problem, solution.contact))))
     if slope > JUDGED_TO:
         return f"slopes of {slope:.2g} degrees, beyond the {JUDGED_TO:g} judged: use finite elements"
-    if stated[worst] <= ACCEPTED:
-        return f"keep the half-space: no number is off by more than {stated[worst]:.1%}"
-    shown = f"{worst.replace('_', ' ')} may be off by {stated[worst]:.1%}"
-    if left <= ACCEPTED:
-        return (
-            f"{shown}: take the corrected numbers, which leave {left:.1%}; slope_correction is no substitute"
-        )
-    return f"{shown}, and {left:.1%} is left by the first-order correction: use finite elements"
+    if (worst := max(stated.values())) <= ACCEPTED:
+        return f"keep the half-space: no number is off by more than {worst:.1%}"
+    kept: list[str] = []
+    correct: list[str] = []
+    elements: list[str] = []
+    for name, share in stated.items():
+        left = (error.second_order[name] + error.finite_strain[name]) / size[name]
+        said = f"{name.replace('_', ' ')} ({share:.1%}"
+        if share <= ACCEPTED:
+            kept.append(f"{said})")
+        else:
+            (correct if left <= ACCEPTED else elements).append(f"{said}, corrected {left:.1%})")
+    parts = {
+        f"keep, off by at most {ACCEPTED:.0%}: ": kept,
+        "take the corrected, slope_correction is no substitute: ": correct,
+        "use finite elements: ": elements,
+    }
+    return "; ".join(words + ", ".join(found) for words, found in parts.items() if found)

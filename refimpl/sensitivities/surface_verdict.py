@@ -49,7 +49,7 @@ class SurfaceVerdict:
     local : coefficient error at each element's undeformed slopes (relative), the grid's shape
     share_above : share of the area where it exceeds 2 %
     short_waves : share of the mean square slope at wavelengths that the coefficient tables do not reach
-    advice : one of three: keep, correct, finite elements
+    advice : for each number one of three: keep, correct, finite elements
     evidence : slopes, contacts and limits behind the advice
     """
 

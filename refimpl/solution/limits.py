@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from refimpl.accuracy.digits import digits_beside
 from refimpl.accuracy.iteration_error import without_rule
 from refimpl.grid import Grid
 from refimpl.grid.contact_patches import patch_sizes
@@ -240,10 +241,10 @@ def _correlation(evidence: Evidence) -> ModelWarning | None:
         return None
     detail = found.detail
     missed = f"; the grid misses {detail.missed}" if detail.missed else ""
+    per = digits_beside(found.elements, detail.resolved)
     text = (
-        f"{found.elements:.2g} elements per {detail.name}, {detail.length:.3g} m: "
-        f"slopes of the roughness are not resolved below {detail.resolved:.0f}{missed}; A, and mu by the "
-        "share of tau, come out too large"
+        f"{per} elements per {detail.name}, {detail.length:.3g} m: slopes of the roughness are not "
+        f"resolved below {detail.resolved:.0f}{missed}; A, and mu by the share of tau, come out too large"
     )
     return ModelWarning(Limit(detail.name), found.elements, detail.resolved, text)
 
@@ -251,8 +252,8 @@ def _correlation(evidence: Evidence) -> ModelWarning | None:
 def _data(evidence: Evidence) -> ModelWarning | None:
     points = max(evidence.problem.grid.spacings) / (evidence.scene.pitch or math.inf)
     text = (
-        f"{points:.2g} points of a surface's data per element: points between the elements' centres are not "
-        "sampled, and error bars do not include them"
+        f"{digits_beside(points, 1)} points of a surface's data per element: points between the elements' "
+        "centres are not sampled, and error bars do not include them"
     )
     return ModelWarning(Limit.DATA, points, 1, text) if points > 1 + ROUNDING else None
 
@@ -266,8 +267,8 @@ def _radius(evidence: Evidence) -> ModelWarning | None:
     patches = patch_sizes(contact[box.slices], periodic=grid.periodic).size
     radius = math.sqrt(np.count_nonzero(contact) / (math.pi * patches))
     text = (
-        f"contact patches have a mean radius of {radius:.2g} elements: below 3 areas are coarse, and error "
-        "bars of areas, peaks and approaches may be too short where they are finite"
+        f"contact patches have a mean radius of {digits_beside(radius, _RADIUS)} elements: below 3 areas are "
+        "coarse, and error bars of areas, peaks and approaches may be too short where they are finite"
     )
     return ModelWarning(Limit.RADIUS, radius, _RADIUS, text) if radius < _RADIUS else None
 

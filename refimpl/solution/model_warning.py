@@ -22,6 +22,7 @@ class Limit(StrEnum):
     RADIUS = "contact radius"
     ACTIVE_SET = "active set of tau"
     NEGLECTED = "neglected"
+    INPUT = "implausible input"
 
 
 class ModelWarning(str):

@@ -1,4 +1,4 @@
-"""Notes on inputs that are seldom meant: moduli in GPa, a strength above the hardness, a length in um.
+"""Warnings of inputs that are seldom meant: moduli in GPa, a strength above the hardness, a length in um.
 
 None of them is an error: the theory has no scale, and what is unusual may be right.
 """
@@ -13,91 +13,105 @@ from refimpl.model.materials import Material
 from refimpl.planning.plan import Plan
 from refimpl.scene.scene import Scene
 from refimpl.solution.evidence import Evidence
-from refimpl.solution.model_warning import Notice
+from refimpl.solution.model_warning import Limit, ModelWarning, Notice
 from refimpl.surfaces import GaussianRoughness, SelfAffineRoughness, Sphere
 
 MODULI = (1e6, 2e12)  # Pa: from soft gels to twice diamond
 _STRONG = 10.0  # tau over the mean contact pressure
 _WEAK = 1e-3  # tau's share of mu
 _FULL_TURN = 6.2832  # rad: 2 pi, rounded up
+_HUGE = 100.0  # domain over the radius of a ball: um taken for m is 1e6
 _SOFTER = 5.0  # E over the hardness: 20 to 500 of metals, 10 to 20 of ceramics, 6 to 10 of hard carbon
 _INDEX = 1e3  # plasticity index
 _LENGTHS = ("correlation_length", "short_cut")  # roughness of longer ones is a smooth surface on the domain
 
 
-def notes(solved: Evidence) -> tuple[Notice, ...]:
-    """Return notes of implausible inputs and of surfaces, but those with a warning of their own."""
+def notes(solved: Evidence) -> tuple[ModelWarning | Notice, ...]:
+    """Return warnings of implausible inputs, and notes of surfaces but those with a warning of their own."""
     scene, grid = solved.scene, solved.problem.grid
     parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
-    lines = (*implausible(scene, solved.plan), *scene.notes(grid))
     rough = (part for part in parts if part.detail(max(grid.spacings)) is not None)
     named = {line for part in rough for line in part.notes(grid)}
-    return tuple(Notice(line) for line in lines if line not in named)
+    told = (Notice(line) for line in scene.notes(grid) if line not in named)
+    return (*implausible(scene, solved.plan), *told)
 
 
-def implausible(scene: Scene, plan: Plan) -> Iterator[str]:
-    """Return a line for each input beyond its usual range; the mean contact pressure is the expected one."""
+def implausible(scene: Scene, plan: Plan) -> Iterator[ModelWarning]:
+    """Yield a warning for each input beyond its usual range; contact pressures are the expected ones."""
     for name, body in (("lower", scene.lower), ("upper", scene.upper)):
         yield from _material(name, body.material, scene.friction.jump)
         yield from _surface(name, scene)
     mean = plan.contact.mean_pressure
     if mean > 0 and scene.friction.jump > _STRONG * mean:
-        yield (
+        yield _warning(
+            scene.friction.jump,
+            _STRONG * mean,
             f"tau, {scene.friction.jump:.4g} Pa, is {scene.friction.jump / mean:.3g} times the mean contact "
             "pressure to be expected: did you mean MPa (15 MPa is 15e6), and "
-            f"is the load, {scene.load:.4g} N, right?"
+            f"is the load, {scene.load:.4g} N, right?",
         )
     expected = friction_coefficient_at(scene.friction, mean) * mean if mean > 0 else 0.0
     if 0 < scene.friction.jump < _WEAK * expected:
-        yield (
+        yield _warning(
+            scene.friction.jump,
+            _WEAK * expected,
             f"tau, {scene.friction.jump:.4g} Pa, is less than {_WEAK:.1%} of the friction to be expected: "
-            "did you mean MPa (60 MPa is 60e6)?"
+            "did you mean MPa (60 MPa is 60e6)?",
         )
     if abs(scene.sliding_direction) > _FULL_TURN:
-        yield (
+        yield _warning(
+            abs(scene.sliding_direction),
+            _FULL_TURN,
             f"sliding_direction, {scene.sliding_direction:.4g} rad, is beyond a full turn: did you mean "
-            "degrees (45 degrees are 0.785 rad)?"
+            "degrees (45 degrees are 0.785 rad)?",
         )
     yield from _index(scene, plan)
 
 
-def _material(name: str, material: Material, tau: float) -> Iterator[str]:
+def _warning(number: float, allowed: float, text: str) -> ModelWarning:
+    return ModelWarning(Limit.INPUT, number, allowed, text)
+
+
+def _material(name: str, material: Material, tau: float) -> Iterator[ModelWarning]:
     least, most = MODULI
     if not material.is_rigid and not least <= material.E <= most:
         help_ = "did you mean GPa (200 GPa is 200e9)?" if least > material.E else "a rigid body is E = rigid"
-        yield f"{name}.E, {material.E:.4g} Pa, is outside {least:g} to {most:g} Pa: {help_}"
+        text = f"{name}.E, {material.E:.4g} Pa, is outside {least:g} to {most:g} Pa: {help_}"
+        yield _warning(material.E, least if least > material.E else most, text)
     hardness = material.hardness
     if hardness is None:
         return
+    said = f"{name}.hardness, {hardness:.4g} Pa, is"
     if hardness > material.E / _SOFTER:
-        yield (
-            f"{name}.hardness, {hardness:.4g} Pa, is above a fifth of E, {material.E:.4g} Pa: are both in Pa?"
-        )
+        text = f"{said} above a fifth of E, {material.E:.4g} Pa: are both in Pa?"
+        yield _warning(hardness, material.E / _SOFTER, text)
     if hardness < tau:
-        yield f"{name}.hardness, {hardness:.4g} Pa, is below tau, {tau:.4g} Pa: are both in Pa?"
+        yield _warning(hardness, tau, f"{said} below tau, {tau:.4g} Pa: are both in Pa?")
 
 
-def _surface(name: str, scene: Scene) -> Iterator[str]:
+def _surface(name: str, scene: Scene) -> Iterator[ModelWarning]:
     shorter, longer = min(scene.lengths), max(scene.lengths)
     for part in scene.parts(name):
         if isinstance(part, Sphere) and abs(part.radius) < longer:
-            yield (
-                f"{name}: radius {part.radius:.4g} m is below the domain's {longer:.4g} m: "
-                "a paraboloid is no sphere there"
-            )
+            said = f"{name}: radius {part.radius:.4g} m is below the domain's {longer:.4g} m: "
+            unit = "is pixel_size, or the domain's size, in m (1 um is 1e-6)?"
+            said += unit if longer > _HUGE * abs(part.radius) else "a paraboloid is no sphere there"
+            yield _warning(abs(part.radius), longer, said)
         if isinstance(part, GaussianRoughness | SelfAffineRoughness):
             for label, length in part.parameters().items():
                 if label.startswith(_LENGTHS) and length > shorter:
-                    yield (
+                    text = (
                         f"{name}: {label} {length:.4g} m is beyond the domain's {shorter:.4g} m: "
                         "did you mean um (100 um is 100e-6)?"
                     )
+                    yield _warning(length, shorter, text)
             rms = part.parameters().get("rms", 0.0)
             if rms > shorter:
-                yield f"{name}: rms {rms:.4g} m is beyond the domain's {shorter:.4g} m: did you mean um?"
+                text = f"{name}: rms {rms:.4g} m is beyond the domain's {shorter:.4g} m: did you mean um?"
+                yield _warning(rms, shorter, text)
 
 
-def _index(scene: Scene, plan: Plan) -> Iterator[str]:
+def _index(scene: Scene, plan: Plan) -> Iterator[ModelWarning]:
     """Yield the plasticity index of Eq. (12), by the expected contact's slopes of random roughness."""
     hardness, parts = scene.materials.softer_hardness, (*scene.parts("lower"), *scene.parts("upper"))
     rough = [part for part in parts if isinstance(part, GaussianRoughness | SelfAffineRoughness)]
@@ -105,7 +119,8 @@ def _index(scene: Scene, plan: Plan) -> Iterator[str]:
         return
     index = scene.materials.reduced_modulus / hardness * math.hypot(*(part.rms_slope for part in rough))
     if index > _INDEX:
-        yield (
+        text = (
             f"plasticity index {index:.3g} is beyond {_INDEX:g}: units of E, hardness, rms and correlation "
             "length?"
         )
+        yield _warning(index, _INDEX, text)

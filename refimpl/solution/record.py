@@ -47,7 +47,7 @@ class Record(_Fields):
 
     @cached_property
     def warnings(self) -> tuple[ModelWarning | Notice, ...]:
-        """Warnings of the model's limits; then notes: why an accuracy was missed, on yield, on the input."""
+        """Warnings of the model's limits and of implausible inputs; then notes."""
         evidence, shortfall = self.details.evidence, self.details.shortfall
         found = (*((shortfall,) if shortfall else ()), *model_warnings(evidence), *notes(evidence))
         return tuple(sorted(found, key=lambda text: text.limit == Notice.limit))

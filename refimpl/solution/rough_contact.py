@@ -6,8 +6,7 @@
   density ``m4 / (6 pi sqrt(3) m2)``, radius ``3/8 sqrt(pi / m4)``, spread ``sqrt(m0 (1 - 0.8968 m2^2 / (m0
   m4)))``.
 
-Both are elastic, without friction. A0 is Hertz's contact of the paraboloids under the load, the domain at
-most.
+Both are elastic, without friction, and for nominally flat bodies: A0 is the domain.
 """
 
 from __future__ import annotations
@@ -116,14 +115,12 @@ def estimates(load: float, nominal_area: float, roughness: Roughness, modulus: f
 
 
 def estimates_of(scene: Scene, grid: Grid) -> tuple[Estimate, ...]:
-    """Return the estimates of a scene's roughness as sampled on a grid."""
-    area, modulus = grid.nominal_area, scene.materials.reduced_modulus
-    if scene.curvature > 0:
-        cubed = 0.75 * scene.load / (modulus * scene.curvature)
-        area = min(area, math.pi * cubed ** (2 / 3))
+    """Return the estimates of a nominally flat scene's roughness as sampled on a grid, none of others."""
+    if scene.curvature != 0 or min(grid.shape) < 3:  # no curvatures
+        return ()
     gap = sum(_rough(scene, "upper", grid), grid.zeros) - sum(_rough(scene, "lower", grid), grid.zeros)
-    few = min(grid.shape) < 3  # no curvatures
-    return () if few else estimates(scene.load, area, Roughness.of(gap, grid.spacings), modulus)
+    roughness, modulus = Roughness.of(gap, grid.spacings), scene.materials.reduced_modulus
+    return estimates(scene.load, grid.nominal_area, roughness, modulus)
 
 
 def _rough(scene: Scene, body: str, grid: Grid) -> Iterable[Array]:

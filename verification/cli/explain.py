@@ -10,6 +10,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from refimpl.half_space.warning import ALLOWED, expected_error
+from refimpl.planning.expected_contact import WITHIN
 from refimpl.scene.discretise import discretise
 from refimpl.scene.resolution import resolution
 from refimpl.solution.rough_contact import estimates_of
@@ -83,7 +84,8 @@ def _expectations(options: Options, plan: Plan) -> list[list[str]]:
     contact, grid, window = plan.contact, plan.grid, plan.contact.window
     share = contact.elements / grid.elements
     rows = [
-        ["contact", f"{share:.2%} of the domain, {contact.elements} of {grid} elements"],
+        ["contact", f"about {share:.2%} of the domain, {contact.elements} of {grid} elements"],
+        ["", f"(from at most 64 x 64 heights: within a factor of {WITHIN} on 25 rough scenes)"],
         ["mean pressure", f"{contact.mean_pressure / 1e6:.4g} MPa"],
         ["approach", f"{contact.approach * 1e6:.4g} um"],
         ["window of possible contact", f"{window[0]} x {window[1]} elements (gap below twice the approach)"],

@@ -128,5 +128,5 @@ def _text(name: str, note: str, verdict: SurfaceVerdict) -> str:
         "",
         "stated error: first order, what it leaves, and finite strain; N: at this approach",
     ]
-    lines += [verdict.advice, wrapped(verdict.evidence, "evidence: ")]
+    lines += [wrapped(verdict.advice, ""), wrapped(verdict.evidence, "evidence: ")]
     return "\n".join(lines)

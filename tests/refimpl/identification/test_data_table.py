@@ -83,6 +83,11 @@ def test_a_file_needs_a_measured_surface() -> None:
         ("load,mu,u_mu\n0.005,0.1,0.01\n9,0.1,0.01\n", "kN mixed"),
         ("load,friction_force,u_friction_force\n1,150,1\n5,600,4\n", "friction and load in N"),
         ("load,mu,u_mu\n1,0.15,2\n5,0.12,2\n", "in per cent"),
+        (
+            "load,mu,u_mu\n0.2,5,0.01\n0.16,20,0.01\n0.15,80,0.01\n",
+            "data: load and mu = 'load 0.15 to 0.2, mu 5 to 80': expected mu below 2 (are the columns "
+            "load and mu exchanged?",
+        ),
         ("load,u_mu,mu\n1,0.15,0.02\n5,0.12,0.02\n", "columns swapped?"),
         ("load,friction_force,u_friction_force\n1,0.15,0.01\n60,0.14,0.01\n", "a number under mu"),
         ("load,mu,u_mu\n5,0,0,15,0,01\n9,0,0,14,0,01\n", "decimal commas need ;"),
@@ -107,6 +112,11 @@ def test_bad_tables_are_refused(tmp_path: Path, text: str, message: str) -> None
         read_rows(_written(tmp_path, text))
     assert message in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+def test_soft_bodies_under_light_loads_have_a_mu_beyond_2(tmp_path: Path) -> None:
+    rows = read_rows(_written(tmp_path, "load,mu,u_mu\n0.05,6,0.1\n0.5,2.8,0.1\n1.5,2.1,0.1\n"))
+    assert [row.mu for row in rows] == [6.0, 2.8, 2.1]
 
 
 def test_no_file_and_no_text(tmp_path: Path) -> None:

@@ -53,6 +53,29 @@ def test_a_row_above_the_fit_is_an_outlier_with_a_positive_residual() -> None:
     assert any(note.startswith("row 3 (5 N) is off by +") for note in made.warnings)
 
 
+@pytest.mark.parametrize(
+    ("factor", "units"),
+    [
+        (1.3, False),
+        (0.7, False),
+        (4.0, False),
+        (10.5, True),
+        (0.11, True),
+        (26.0, True),
+        (9.0, True),
+        (15.0, False),
+    ],
+)
+def test_a_dropped_row_is_off_by_units_only_near_their_factors(
+    found: Identification, factor: float, units: bool
+) -> None:
+    rows = [replace(found.rows[0], mu=factor * found.fitted.predicted[0]), *found.rows[1:]]
+    made = replace(found, rows=tuple(rows), deleted=(6, 0, 0), fitted=replace(found.fitted, dropped=0))
+    (said,) = notes(made)
+    assert f", and dropped from it: its mu is {factor:.3g} times the fit's" in said
+    assert ("units" in said.partition("times")[2]) == units
+
+
 def test_an_identification_of_a_linear_model(found: Identification) -> None:
     """Inputs that shift all rows by as much shift beta: by 0.196 / 1.96 of their tolerances."""
     assert [one.value for one in found.values.values()] == pytest.approx([2.0, 0.3, 2e8], rel=1e-6)

@@ -81,7 +81,7 @@ REFUSED: dict[str, tuple[str, Callable[[], Any]]] = {
     "grid beyond doubles": ("grid", lambda: rf.solve(SCENE, 10**400)),
     "grid of a rectangle beyond doubles": ("grid", lambda: OBLONG.grid(10**400)),
     "wavelength beyond arithmetic": ("low_pass", lambda: rf.MeasuredSurface("a.npy", low_pass=1e308)),
-    "turn by a fraction": ("rotate_deg", lambda: rf.MeasuredSurface("a.npy", rotate_deg=90.5)),
+    "turn beyond a turn": ("rotate_deg", lambda: rf.MeasuredSurface("a.npy", rotate_deg=400)),
     "start as number": ("start", lambda: rf.solve(SCENE, 8, start=3)),
     "start on a grid as text": ("grid", lambda: rf.solve(SCENE, "16", start=rf.solve(SCENE, 8))),
     "progress as number": ("progress", lambda: rf.solve(SCENE, 8, progress=3)),

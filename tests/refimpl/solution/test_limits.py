@@ -206,6 +206,16 @@ def test_a_warning_has_its_numbers_in_their_units(
     assert text in found
 
 
+def test_a_radius_just_below_3_is_printed_below_3() -> None:
+    """A plateau of 28 elements: the root of 28 / pi, 2.985, would be rounded to 3.0."""
+    heights = np.zeros((12, 12))
+    heights[2:9, 3:7] = 1e-6
+    s = rf.solve(
+        replace(SMOOTH, upper=rf.Body(STEEL, rf.Flat()), lower=rf.Body(STEEL, heights), load=1e-3), 12
+    )
+    assert "a mean radius of 2.99 elements: below 3" in named(s)[Limit.RADIUS]
+
+
 SOFT, HARD = rf.Material(2e9, 0.35), rf.Material(7e9, 0.2)
 SCENE = rf.Scene(
     upper=rf.Body(HARD, rf.Sphere(0.05)),

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 import refimpl as rf
+from refimpl.solution.model_warning import Limit, ModelWarning
 from refimpl.solution.plausibility import implausible
 
 SIZE = (3e-3, 2e-3)
@@ -146,6 +147,28 @@ def test_a_tau_without_effect_asks_for_its_unit() -> None:
     law = [rf.Friction(tau=tau, beta=0.1) for tau in (60.0, 60e6, 0.0)]
     found = [notes(replace(SCENE, friction=one)) for one in law]
     assert ["MPa" in " ".join(lines) for lines in found] == [True, False, False]
+
+
+def test_an_implausible_input_is_a_warning_not_a_note() -> None:
+    turned = replace(SCENE, sliding_direction=45.0)
+    (found,) = (w for w in rf.solve(turned, 24).warnings if "did you mean" in w)
+    assert isinstance(found, ModelWarning)
+    assert (found.limit, found.number, found.allowed) == (Limit.INPUT, 45.0, pytest.approx(2 * math.pi, 1e-3))
+
+
+def test_a_domain_of_hundred_balls_asks_for_the_unit_of_the_pixel() -> None:
+    for size, unit in ((0.99, False), (1.01, True)):
+        scene = replace(SCENE, upper=rf.Body(STEEL, rf.Sphere(0.01)), size=(size, size))
+        (note,) = (line for line in notes(scene) if "radius" in line)
+        assert ("is pixel_size, or the domain's size, in m (1 um is 1e-6)?" in note) == unit
+
+
+def test_a_load_beyond_the_hardness_asks_for_mN_where_they_would_fit() -> None:
+    """2e9 Pa on 6 mm^2 bear 12 kN."""
+    for load, fits in ((11.9e6, True), (12.1e6, False)):
+        with pytest.raises(rf.InputError, match=r"^load = ") as refused:
+            rf.solve(replace(SCENE, load=load), 16)
+        assert ("load in mN?" in str(refused.value)) == fits
 
 
 def test_a_load_beyond_the_hardness_names_a_domain_of_nanometres() -> None:

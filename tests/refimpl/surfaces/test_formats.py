@@ -244,9 +244,19 @@ def test_the_librarys_errors_carry_their_cause(tmp_path: Path) -> None:
         read(tmp_path / "a.opd")
     assert "opd: CorruptFile: " in str(refused.value)
     assert "tried" not in str(refused.value)
-    (tmp_path / "a.bin").write_bytes(bytes(range(256)) * 20)
-    with pytest.raises(InputError, match=r"a file that can be read \(\w+: \w+: .+\)"):
-        read(tmp_path / "a.bin")
+
+
+@pytest.mark.parametrize(
+    ("start", "says"),
+    [
+        (b"", r"a map of heights: a\.txt is neither text \(UTF-8, UTF-16, Latin-1\) nor a format of Surface"),
+        (b"\xff\xfe", r"text in UTF-8, UTF-16 or Latin-1: a\.txt begins as UTF-16, but its bytes are none"),
+    ],
+)
+def test_bytes_that_are_no_text_are_refused_in_our_own_words(tmp_path: Path, start: bytes, says: str) -> None:
+    (tmp_path / "a.txt").write_bytes(start + bytes(range(256)) * 20)
+    with pytest.raises(InputError, match=says):
+        read(tmp_path / "a.txt")
 
 
 def test_the_librarys_warnings_become_notes(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -71,7 +72,7 @@ def test_every_way_up_is_the_function_of_the_turned_place(
 
 def test_a_bad_way_up_is_refused(tmp_path: Path) -> None:
     for name, value in (
-        ("mirror", "z"), ("rotate_deg", 45), ("rotate_deg", True), ("turn_over", "yes"), ("replica", 1),
+        ("mirror", "z"), ("rotate_deg", 361), ("rotate_deg", True), ("turn_over", "yes"), ("replica", 1),
         ("centre", 3.0), ("centre", (1.0,)), ("centre", (math.nan, 0.0)), ("repeats", "no"),
     ):  # fmt: skip
         with pytest.raises(rf.InputError, match=f"^{name} = "):
@@ -119,6 +120,69 @@ def test_arrays_on_the_upper_body_are_used_as_given() -> None:
     z[5, 2] = -1e-6
     scene = rf.Scene(body(1e9, z), body(1e9, rf.Flat()), rf.Friction(), load=1e-3, side=1e-3)
     assert np.argwhere(rf.solve(scene, 8).contact).tolist() == [[5, 2]]
+
+
+# --- turned by any angle ---
+
+
+def ripple(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Smooth heights (m) without any symmetry: waves of 10 and 13 pixels."""
+    return np.asarray(1e-8 * (np.sin(0.6 * x / DY) + 0.5 * np.cos(0.4 * (x + y) / DY) + 0.1 * y / DY))
+
+
+def written_ripple(
+    folder: Path, shape: tuple[int, int], hole: bool = False, **options: Any
+) -> rf.MeasuredSurface:
+    x, y = ((np.arange(n) + 0.5 - n / 2) * DY for n in shape)
+    z = ripple(x[:, None], y[None, :])
+    if hole:
+        z[shape[0] // 2, shape[1] // 2] = np.nan
+    np.save(folder / "ripple.npy", z)
+    return rf.MeasuredSurface(folder / "ripple.npy", unit="m", pixel_size=DY, level="none", **options)
+
+
+@pytest.mark.parametrize("angle", [45, 30, -17.5, 120.25, 200.0])
+@pytest.mark.parametrize("over", [False, True])
+def test_a_map_turned_by_any_angle_is_the_turned_function(tmp_path: Path, angle: float, over: bool) -> None:
+    """Two cubic interpolations of a wave of ten points err by less than 0.2 % of its range."""
+    shape, centre = (60, 80), (33e-6, 38e-6)
+    surface = written_ripple(tmp_path, shape, rotate_deg=angle, turn_over=over, centre=centre)
+    grid = Grid((40, 32), (20e-6, 16e-6))
+    x, y = from_middle(grid)
+    x, y = (x, -y) if over else (x, y)
+    cos, sin = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    at = cos * x + sin * y + centre[0] - 30e-6, cos * y - sin * x + centre[1] - 40e-6
+    expected = (-1.0 if over else 1.0) * ripple(*at)
+    np.testing.assert_allclose(surface.heights(grid), expected, rtol=0, atol=2e-3 * np.ptp(expected))
+
+
+def test_the_largest_domain_of_a_turned_map(tmp_path: Path) -> None:
+    surface = written_ripple(tmp_path, (100, 100), rotate_deg=45)
+    assert surface.extent((0.0, 0.0)) == pytest.approx((70e-6, 70e-6))  # 100 / sqrt(2), in whole pixels
+    with pytest.raises(rf.InputError, match=r"at most the measured 7e-05 x 7e-05 m of ripple\.npy"):
+        surface.heights(Grid((8, 8), (71e-6, 71e-6)))
+    notes = surface.notes(Grid((8, 8), (40e-6, 40e-6)))
+    assert "turned by 45 degrees, besides quarter turns: interpolated by cubics" in notes[0]
+    long = written_ripple(tmp_path, (40, 120), rotate_deg=30)
+    assert long.extent((0.0, 0.0)) == pytest.approx((23e-6, 40e-6))  # 20 / cos, 20 / sin
+
+
+def test_missing_points_stay_missing_in_a_turned_map(tmp_path: Path) -> None:
+    surface = written_ripple(tmp_path, (100, 100), hole=True, rotate_deg=45)
+    notes = surface.notes(Grid((8, 8), (40e-6, 40e-6)))
+    assert any("of 1600 points in the window are missing" in note for note in notes)
+
+
+def test_a_map_that_repeats_is_turned_by_quarters_alone(tmp_path: Path) -> None:
+    with pytest.raises(
+        rf.InputError, match=r"^rotate_deg = 45: expected a multiple of 90 for a map that rep"
+    ):
+        written_ripple(tmp_path, (20, 20), rotate_deg=45, repeats=True)
+
+
+def test_a_map_of_few_points_is_not_turned(tmp_path: Path) -> None:
+    with pytest.raises(rf.InputError, match=r"^rotate_deg = 45\.0: expected .*, or a map of more points"):
+        written_ripple(tmp_path, (5, 5), rotate_deg=45).heights(Grid((2, 2), (1e-6, 1e-6)))
 
 
 # --- sizes from files ---

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import json
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -58,6 +59,14 @@ def test_a_plan_is_shown_in_100_columns_without_a_solve(size: str, monkeypatch: 
 def test_limits_are_stated_before_anything_is_solved(options: str, says: str, tmp_path: Path) -> None:
     (tmp_path / "scene.toml").write_text(SMALL)
     assert says in " ".join(shown(f"solve {tmp_path}/scene.toml {options} --explain").split())
+
+
+def test_the_contact_is_about_the_solved_one() -> None:
+    text = " ".join(shown("solve rough-planes --grid 32 --explain").split())
+    assert re.search(r"contact about \d+\.\d\d% of the domain, \d+ of 32 x 32 elements", text)
+    assert "(from at most 64 x 64 heights: within a factor of 2.7 on 25 rough scenes)" in text
+    assert "Persson (elastic)" in text
+    assert "Persson" not in shown("solve table1-rough --grid 32 --explain")
 
 
 def test_a_term_has_its_changes_of_mu_and_of_the_area_in_this_order() -> None:
