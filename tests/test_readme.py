@@ -132,7 +132,8 @@ def test_what_dimpled_flats_miss_is_of_the_study() -> None:
     error = worst["error"]
     assert (
         f"| worst mu | {100 * error / (1 + error):.0f} % below the reference "
-        f"({100 * error:.0f} % of itself), {error / worst['bar']:.1f} times its bar: a capped dimpled flat on {worst['M']} elements |"
+        f"({100 * error:.0f} % of itself), {error / worst['bar']:.1f} times its bar: "
+        f"a capped dimpled flat on {worst['M']} elements |"
     ) in PAGE_OF_BARS
 
 
