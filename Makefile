@@ -27,7 +27,7 @@ results: $(READY)
 	$(BIN)/rough-friction verify --tier full --jobs 2 --json $(OUT)/full.json || status=$$?; \
 	$(BIN)/python -m verification.framework.divided $(OUT)/full.json || exit $$?; \
 	$(BIN)/rough-friction verify --tier quick --jobs 2 --json reports/results/quick.json || status=$$?; \
-	$(BIN)/python -m verification.output.result_files reports/results/quick.json; \
+	$(BIN)/python -m verification.output.result_files reports/results/quick.json || status=$$?; \
 	$(BIN)/python -m reports.results_page || status=$$?; \
 	exit $$status
 

@@ -43,10 +43,10 @@ class GridFeatures:
     dmu_dA : ``tau / N`` (1/m^2)
     parts : uncertainties that the grid's own solution states (iteration, active set, neglected terms)
     faces : of the contact's edge by kind (`contact_edge`)
+    rim_faces : number of them just before elements at the hardness
     depth : how far tractions pressed the contact in (m)
     shear_to_normal_ratio : ``|c / a| tau A / N``: tau's displacement over the pressure's; of a law that is
         not linear all shear's
-    rim_faces : faces of the contact's edge just before elements at the hardness
     plastic_edge : the like along the edge of the elements at the hardness (m^2)
     straight : edges of the contact along the grid
     plastic_straight : the like of the elements at the hardness
@@ -74,9 +74,9 @@ class GridFeatures:
     parts: Mapping[str, Mapping[str, float]]
     slope_line_error: float = 0.0
     faces: tuple[float, ...] = NO_FACES
+    rim_faces: int = 0
     depth: float = 0.0
     shear_to_normal_ratio: float = 0.0
-    rim_faces: int = 0
     plastic_edge: float = 0.0
     straight: StraightEdges = NO_STRAIGHT_EDGES
     plastic_straight: StraightEdges = NO_STRAIGHT_EDGES

@@ -226,3 +226,21 @@ def test_the_yielded_area_is_uncertain_by_its_edge(multiplicity: float, squares:
     assert found.value == pytest.approx((60 + PLASTIC_LACK * edge) * dA)
     deviation = math.hypot(*(PLASTIC_SCATTER * sizes)) * dA
     assert found.half_width == pytest.approx(deviation * stats.t.ppf(0.975, PLASTIC_FREEDOM))
+
+
+def test_a_ball_pressed_far_beyond_yield_is_within_its_bars() -> None:
+    """Pressures fall from the hardness to zero within an element or two: each such face scatters as well."""
+    soft = rf.Material(1e11, 0.3, hardness=2.5e8)
+    scene = rf.Scene(
+        rf.Body(rf.Material(2e11, 0.3), rf.Sphere(0.02)), rf.Body(soft, rf.Flat()), rf.Friction(), 1.0, 1e-3
+    )
+    missed = []
+    for load in (21.6, 43.2, 57.6):
+        pressed = replace(scene, load=load)
+        exact = rf.solve(pressed, 400).contact_area_corrected
+        for M in (48, 64, 80):
+            found = rf.solve(pressed, M).details.features
+            error = abs(found.numbers["contact_area_corrected"] - exact)
+            assert error < estimates([found])["contact_area"].half_width, (load, M)
+            missed.append(error > estimates([replace(found, rim_faces=0)])["contact_area"].half_width)
+    assert sum(missed) >= 3

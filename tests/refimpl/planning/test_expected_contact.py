@@ -116,12 +116,34 @@ def test_symmetry_is_decided_by_all_heights(shape: tuple[int, int]) -> None:
     assert (odd.symmetric, odd.mirrored) == (False, False)
 
 
-@pytest.mark.parametrize("load", [0.3, 5.0])
-@pytest.mark.parametrize("length", [1e-4, 2.5e-5])
-def test_the_area_of_rough_planes_is_within_its_factor(length: float, load: float) -> None:
-    """At 3, 4, 39 and 44 % of contact; 64 x 64 heights miss slopes of the shorter length."""
-    flat = rf.Body(STEEL, rf.Flat()), rf.Body(STEEL, rf.GaussianRoughness(3e-7, length, seed=9))
-    scene = rf.Scene(*flat, rf.Friction(), load * 1e-4 / length * 40, 1e-3, periodic=True)
-    solved = rf.solve(scene, 128, oblique=False)
-    share = expected_contact(discretise(scene, solved.grid)).elements / np.count_nonzero(solved.contact)
-    assert 1 / WITHIN < share < WITHIN
+def drawn(seed: int) -> rf.Scene:
+    """A rough plane, or ball: Gaussian or self-affine, waves from 1/125 to a quarter of the side."""
+    rng = np.random.default_rng(seed)
+    length = 1e-3 * math.exp(rng.uniform(math.log(0.008), math.log(0.25)))
+    longest = min(4 * length, 0.9e-3)
+    waves = {"roll_off": longest, "long_cut": longest, "short_cut": length}
+    rough = (
+        rf.GaussianRoughness(3e-7, length, seed)
+        if seed % 2
+        else rf.SelfAffineRoughness(hurst=0.8, rms=3e-7, seed=seed, **waves)
+    )
+    modulus = 0.5 * STEEL.plane_strain_modulus
+    if ball := seed % 5 == 4:
+        load = 4 * modulus * (1e-3 * rng.uniform(0.1, 0.3)) ** 3 / (3 * 0.1)
+    else:  # 1 to 60 % of contact, about
+        load = math.exp(rng.uniform(math.log(0.01), math.log(0.6)))
+        load *= 0.6 * modulus * math.sqrt(2) * rough.rms_slope * 1e-6
+    shape = rf.Sphere(0.1) if ball else rf.Flat()
+    bodies = rf.Body(STEEL, shape), rf.Body(STEEL, rough)
+    return rf.Scene(*bodies, rf.Friction(), load, 1e-3, periodic=bool(seed % 3) and not ball)
+
+
+def test_the_area_of_25_rough_scenes_is_within_its_factor() -> None:
+    """And not far within: the factor is that of the worst scene, whose waves 64 x 64 heights miss."""
+    ratios = []
+    for seed in range(25):
+        scene = drawn(seed)
+        solved = rf.solve(scene, 128, oblique=False)
+        expected = expected_contact(discretise(scene, solved.grid))
+        ratios.append(expected.elements / np.count_nonzero(solved.contact))
+    assert 0.9 * WITHIN < max(*ratios, 1 / min(ratios)) < WITHIN
