@@ -32,8 +32,8 @@ def notes(solved: Evidence) -> tuple[ModelWarning | Notice, ...]:
     parts = (*scene.lower.surface.parts, *scene.upper.surface.parts)
     rough = (part for part in parts if part.detail(max(grid.spacings)) is not None)
     named = {line for part in rough for line in part.notes(grid)}
-    told = (Notice(line) for line in scene.notes(grid) if line not in named)
-    return (*implausible(scene, solved.plan), *told)
+    surfaces = (Notice(line) for line in scene.notes(grid) if line not in named)
+    return (*implausible(scene, solved.plan), *surfaces)
 
 
 def implausible(scene: Scene, plan: Plan) -> Iterator[ModelWarning]:

@@ -32,8 +32,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     progress.close()
     write_result(found, options.json)
     print(", ".join(f"{number} {verdict}" for verdict, number in found["counts"].items()), file=sys.stdout)
-    unlawful = sum(count["wrong"] for count in found["lawful states"])
-    return 1 if study.unexplained(found["states"]) or unlawful else 0
+    wrong = sum(count["wrong"] for count in found["lawful states"])
+    return 1 if study.unexplained(found["states"]) or wrong else 0
 
 
 if __name__ == "__main__":
