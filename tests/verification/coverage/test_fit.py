@@ -60,3 +60,10 @@ def test_the_committed_features_give_the_committed_constants_again() -> None:
     for name, one in fit.fitted(unpacked(fit.FEATURES)).items():
         allowed = np.maximum(one["standard_error"] or 0.0, 1e-9)
         assert np.all(np.abs(np.subtract(one["value"], document[name]["value"])) <= allowed), name
+
+
+def test_known_scatter_is_not_fitted_again() -> None:
+    """Errors of deviation sqrt(1 + 2^2), of which 1 is known: 4000 normal ones give the 2 to 4 %."""
+    errors = np.sqrt(5.0) * np.random.default_rng(7).standard_normal(4000)
+    found = likeliest(errors, np.zeros((4000, 0)), np.ones((4000, 1)), freedoms=[1e3], known=np.ones(4000))
+    assert found.scale[0] == pytest.approx(2.0, rel=0.04)
