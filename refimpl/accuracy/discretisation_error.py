@@ -13,10 +13,11 @@ Each number is the intercept q of a line over the grids (`bayesian_line`), ``y_k
 - Approaches: by the border of a free domain, where the pressure of a contact that is cut off is singular as
   under a punch (`BORDER_BOUND`, order h), and by the differences that slopes are (`SLOPE_BOUND`, order h^2).
   Under a load the mean gap is the approach but for a constant, so that it scatters with the gap's edge as
-  well (`gap_scatter`): nearly full contacts have gaps of few elements.
+  well (`gap_scatter`): nearly full contacts have gaps of few elements. Where pressures do not fall towards
+  the edge (`rising_share`), at rims and single elements, it moves as h.
 - Every other number scatters as powers of the edge fraction, and as slopes bend from element to element.
   Where waves of pressure or slopes are shorter than elements, bars stay wide. Where elements with half of the
-  maximum pressure stand alone, nothing bounds it.
+  maximum pressure stand alone, nothing bounds that pressure.
 
 The constants are fitted to random scenes and judged on others (`verification.coverage.fit`).
 """
@@ -45,6 +46,7 @@ from refimpl.accuracy.scatter import (
     edge_scatter,
     gap_scatter,
     plastic_area,
+    rising_share,
     slope_scatter,
     straight_share,
 )
@@ -85,16 +87,17 @@ def rest_sizes(results: Sequence[GridFeatures]) -> Array:
 
 
 def approach_sizes(results: Sequence[GridFeatures]) -> Array:
-    """Return units of the scatter of an approach under a load (m), shape (5, grids).
+    """Return units of the scatter of an approach under a load (m), shape (6, grids).
 
-    The contact's edge; the gap's; a free border (order h); differences for slopes (h^2); first contact.
+    The edge towards which pressures do not fall (order h); waves that the grid misses; the gap's edge; a free
+    border (h); differences for slopes (h^2); first contact.
     """
     last = results[-1]
     unit = max(abs(last.numbers["approach"]), last.depth)
-    edges = zip(results, edge_scatter(results), strict=True)
     return np.array(
         [
-            [result.peak.widened(edge * unit, 0.5) for result, edge in edges],
+            [unit * min(result.edge_fraction, 1.0) * rising_share(result) for result in results],
+            [unit * result.missed_share for result in results],
             [gap_scatter(result) for result in results],
             [result.border_fraction * result.depth for result in results],
             [result.slope_displacement_error for result in results],
@@ -119,6 +122,12 @@ class _Grids:
 
     def finest(self, name: str) -> float:
         return abs(self.results[-1].numbers[name])
+
+    @property
+    def unmeasured(self) -> bool:
+        """True if the finest grid's contact is too few elements for a bar."""
+        elements = self.finest("contact_area") / self.results[-1].grid.element_area
+        return elements < _UNMEASURED + 0.5
 
     def peak_scatter(self, unit: float) -> Array:
         """Return sizes of a scatter that grows with the root of the peak's error factor."""
@@ -216,9 +225,13 @@ def _peak(grids: _Grids) -> Intercept:
 
 
 def _approach(grids: _Grids) -> Intercept:
-    """Return the approach under a load, counted from the first contact of the surfaces themselves."""
+    """Return the approach under a load, counted from the first contact of the surfaces themselves.
+
+    Nothing bounds that of a contact of at most four elements.
+    """
     values = grids.found("approach") + grids.each(lambda result: result.first_contact.height)
-    return grids.smooth(values, APPROACH_FREEDOM, APPROACH_SCATTER, approach_sizes(grids.results))
+    found = grids.smooth(values, APPROACH_FREEDOM, APPROACH_SCATTER, approach_sizes(grids.results))
+    return found.widened(math.inf) if grids.unmeasured else found
 
 
 def _force(grids: _Grids) -> Intercept:
@@ -261,5 +274,4 @@ def _area(grids: _Grids) -> Intercept:
     bias = Bias(grids.each(lambda result: result.excess), 1.0, EXCESS_SPREAD)
     scatter = grids.each(area_scatter)[None]
     found = grids.smooth(grids.found("contact_area"), AREA.weight, np.ones(1), scatter, bias)
-    area, dA = grids.finest("contact_area"), grids.results[-1].grid.element_area
-    return found.widened(area) if area < (_UNMEASURED + 0.5) * dA else found
+    return found.widened(grids.finest("contact_area")) if grids.unmeasured else found

@@ -103,6 +103,12 @@ class GridFeatures:
         return self.numbers.get("plastic_area", 0.0) > 0
 
     @property
+    def missed_share(self) -> float:
+        """Share of the rms gradient in waves that the grid does not hold."""
+        area = self.numbers["contact_area"]
+        return self.parts.get("contact_area", {}).get("short waves", 0.0) / area if area > 0 else 0.0
+
+    @property
     def edge_fraction(self) -> float:
         """Share of the contact area that whole elements add along its edge."""
         area = self.numbers["contact_area"]

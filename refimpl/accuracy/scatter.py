@@ -51,6 +51,12 @@ def area_counts(result: GridFeatures) -> Array:
     return np.concatenate([counts * together, [straight, uneven, straight * single, rising.sum() ** 2]])
 
 
+def rising_share(result: GridFeatures) -> float:
+    """Return the share of faces along the contact's edge that see no fall, or one from the hardness alone."""
+    faces = np.reshape(result.faces, KINDS).sum(axis=(0, 2))
+    return float(min(1.0, (faces[_RISING:].sum() + result.rim_faces) / max(faces.sum(), 1.0)))
+
+
 def rim_count(result: GridFeatures) -> float:
     """Return the faces before elements at the hardness, times the symmetric copies."""
     return result.rim_faces * result.symmetry_multiplicity

@@ -52,7 +52,7 @@ Sample = Callable[[GridFeatures, GridFeatures, Solved], Row | None]
 def _area_row(grid: GridFeatures, reference: GridFeatures, one: Solved) -> Row | None:
     """Return the excess of the counted area, in elements; none where short waves or the hardness decide."""
     dA, ratio = grid.grid.element_area, reference.grid.element_area / grid.grid.element_area
-    if missed(grid) > _LEAST_WAVES or grid.yields:
+    if grid.missed_share > _LEAST_WAVES or grid.yields:
         return None
     terms, counts, area = grid.excess_terms, area_counts(grid), one.exact.get("contact_area")
     if area is None:
@@ -121,12 +121,6 @@ def _squares(
     return sizes([grid])[:, 0] ** 2 + sizes([reference])[:, 0] ** 2
 
 
-def missed(features: GridFeatures) -> float:
-    """Return the share of the rms gradient in waves that the grid does not hold."""
-    parts = features.parts.get("contact_area", {})
-    return parts.get("short waves", 0.0) / features.numbers["contact_area"]
-
-
 def rows_of(sample: Sample, scenes: Iterable[Solved]) -> tuple[Array, Array, Array]:
     """Return errors (n,), sizes of the mean's parts (n, k) and squared sizes of the scatter's (n, m)."""
     each = ((grid, one.grids[-1], one) for one in scenes for grid in one.grids[:-1])
@@ -182,7 +176,7 @@ def rim_constants(scenes: Iterable[Solved], edge: Mapping[str, Constant]) -> dic
     for one in scenes:
         reference = one.grids[-1]
         for grid in one.grids[:-1]:
-            if grid.rim_faces and missed(grid) <= _LEAST_WAVES:
+            if grid.rim_faces and grid.missed_share <= _LEAST_WAVES:
                 dA = grid.grid.element_area
                 off = (grid.corrected[_AREA] - reference.corrected[_AREA]) / dA
                 rows.append((off, *(sizes(grid, dA) + sizes(reference, dA))))

@@ -11,7 +11,13 @@ from scipy import stats
 
 import refimpl as rf
 from refimpl.accuracy import discretisation_error
-from refimpl.accuracy.discretisation_error import BULK_SCATTER, SHEAR_BOUNDS, estimates
+from refimpl.accuracy.discretisation_error import (
+    APPROACH_FREEDOM,
+    APPROACH_SCATTER,
+    BULK_SCATTER,
+    SHEAR_BOUNDS,
+    estimates,
+)
 from refimpl.accuracy.iteration_error import active_set_parts, iteration_parts
 from refimpl.accuracy.refinement import tolerance_for
 from refimpl.accuracy.scatter import PLASTIC_FREEDOM, PLASTIC_LACK, PLASTIC_SCATTER, edge_scatter
@@ -87,6 +93,23 @@ def test_a_state_that_ran_off_is_not_bounded(number: float) -> None:
     parts = discretisation_error.discretisation([ran_off])
     assert set(parts) == set(discretisation_error.discretisation([made_up(64)]))
     assert all(part == {"discretisation": math.inf} for part in parts.values())
+
+
+def test_a_contact_of_four_elements_bounds_no_approach() -> None:
+    few = made_up(64)
+    for elements, open_ in ((4, True), (5, False)):
+        area = elements * few.grid.element_area
+        found = estimates([replace(few, numbers={**few.numbers, "contact_area": area})])["approach"]
+        assert math.isinf(found.half_width) is open_
+
+
+def test_waves_that_a_grid_misses_leave_its_approach_open_by_their_share() -> None:
+    fine = made_up(64)
+    area = fine.numbers["contact_area"]
+    parts = {**fine.parts, "contact_area": {"short waves": 0.3 * area}}
+    bars = [estimates([grid])["approach"].half_width for grid in (fine, replace(fine, parts=parts))]
+    factor = stats.t(APPROACH_FREEDOM).ppf(0.975)
+    assert bars[1] == pytest.approx(math.hypot(bars[0], 0.3 * factor * APPROACH_SCATTER[1] * 1e-6))
 
 
 def test_tau_on_the_edge_widens_the_approach_under_a_load_alone() -> None:
@@ -237,10 +260,12 @@ def test_a_ball_pressed_far_beyond_yield_is_within_its_bars() -> None:
     missed = []
     for load in (21.6, 43.2, 57.6):
         pressed = replace(scene, load=load)
-        exact = rf.solve(pressed, 400).contact_area_corrected
+        exact = rf.solve(pressed, 400)
         for M in (48, 64, 80):
             found = rf.solve(pressed, M).details.features
-            error = abs(found.numbers["contact_area_corrected"] - exact)
+            bar = discretisation_error.discretisation([found])["approach"]["discretisation"]
+            assert abs(found.numbers["approach"] - exact.approach) < bar < 0.2 * exact.approach, (load, M)
+            error = abs(found.numbers["contact_area_corrected"] - exact.contact_area_corrected)
             assert error < estimates([found])["contact_area"].half_width, (load, M)
             missed.append(error > estimates([replace(found, rim_faces=0)])["contact_area"].half_width)
     assert sum(missed) >= 3
