@@ -126,8 +126,7 @@ class _Grids:
     @property
     def unmeasured(self) -> bool:
         """True if the finest grid's contact is too few elements for a bar."""
-        elements = self.finest("contact_area") / self.results[-1].grid.element_area
-        return elements < _UNMEASURED + 0.5
+        return self.finest("contact_area") < (_UNMEASURED + 0.5) * self.results[-1].grid.element_area
 
     def peak_scatter(self, unit: float) -> Array:
         """Return sizes of a scatter that grows with the root of the peak's error factor."""
@@ -225,10 +224,7 @@ def _peak(grids: _Grids) -> Intercept:
 
 
 def _approach(grids: _Grids) -> Intercept:
-    """Return the approach under a load, counted from the first contact of the surfaces themselves.
-
-    Nothing bounds that of a contact of at most four elements.
-    """
+    """Return the approach under a load, from first contact; nothing bounds that of at most four elements."""
     values = grids.found("approach") + grids.each(lambda result: result.first_contact.height)
     found = grids.smooth(values, APPROACH_FREEDOM, APPROACH_SCATTER, approach_sizes(grids.results))
     return found.widened(math.inf) if grids.unmeasured else found
