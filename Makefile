@@ -65,7 +65,8 @@ mutation: $(READY)
 site: $(READY)
 	$(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt -e ".[docs]"
 	rm -rf $(OUT)/pages
-	$(BIN)/python -m nbconvert --execute --to markdown --output-dir $(OUT)/pages/docs/notebooks docs/notebooks/*.ipynb
+	$(BIN)/python -m nbconvert --execute --KernelManager.transport_encryption=required \
+		--to markdown --output-dir $(OUT)/pages/docs/notebooks docs/notebooks/*.ipynb
 	$(BIN)/rough-friction report --results reports/results/quick.json.gz --output $(OUT)/pages
 	$(BIN)/python .ci/pages.py
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build

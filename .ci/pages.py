@@ -54,7 +54,9 @@ def pages() -> Iterator[tuple[str, str]]:
             name = (path.parent / link).resolve().relative_to(Path().resolve())
             shown = f"```{name.suffix[1:]}\n{name.read_text(encoding='utf-8')}```\n"
             yield f"{name}.md", f"{LAST}# {name}\n\n{shown}"
-        text += "\n".join(options(parser())) if path.stem == "command-line" else ""
+        if path.stem == "command-line":
+            text, after = text.split("\nNext: ")
+            text += "\n".join([*options(parser()), f"\nNext: {after}"])
         text = keys.page(text) if path.stem == "scene-file" else text
         text = FORMULA.sub(formula, text)
         yield str(path), NAMED.sub(r'```\1 title="\2"', SOURCE.sub(r"\1.md", text)).replace(".ipynb)", ".md)")
@@ -80,7 +82,8 @@ def options(command: argparse.ArgumentParser) -> Iterator[str]:
         if isinstance(action, argparse._SubParsersAction):
             below += action.choices.values()
         elif action.help != argparse.SUPPRESS:
-            yield f"| `{form._format_action_invocation(action)}` | {form._expand_help(action)} |"
+            meaning = " ".join(form._expand_help(action).split()).replace("|", r"\|")
+            yield f"| `{form._format_action_invocation(action)}` | {meaning} |"
     yield from (line for found in below for line in options(found))
 
 

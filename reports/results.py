@@ -207,6 +207,13 @@ def shown_status(case: Case) -> str:
     return RECORDED if recorded else str(case["status"])
 
 
+def shown_counts(cases: Iterable[Case]) -> dict[str, int]:
+    """Return numbers of cases by status for people; "recorded" only if there are any."""
+    shown = [shown_status(case) for case in cases]
+    statuses = (*STATUSES[:1], *[RECORDED] * (RECORDED in shown), *STATUSES[1:])
+    return {status: shown.count(status) for status in statuses}
+
+
 def worst(cases: list[Case]) -> str:
     """Return the status that decides over cases: error or failure first, then what did not run."""
     present = {case["status"] for case in cases}

@@ -23,6 +23,7 @@ from refimpl.measured.areal_parameters import (
 )
 from refimpl.measured.measured_surface import MeasuredSurface
 from refimpl.measured.missing_points import fill
+from refimpl.measured.reading import PLAIN
 from refimpl.measured.roughness_fit import RoughnessFit, fit_roughness
 from refimpl.measured.spectrum import NORMALISATION, Spectrum, fill_error, texture_direction
 from refimpl.measured.standing_out import standing_out
@@ -174,10 +175,18 @@ class Inspection:
             "curves": _listed(self.curves()),
             "notes": [
                 *self.surface.prepared.notes,
+                *_unstated_axes(self.surface),
                 *standing_out(self._filled, np.isfinite(self.z)),
                 *implausible_slope(self.z, self.pixel),
             ],
         }
+
+
+def _unstated_axes(surface: MeasuredSurface) -> tuple[str, ...]:
+    """Name the assumed axes of a text without a header, unless the surface is rotated or mirrored."""
+    assumed = surface.reading.source == PLAIN and surface.mirror is None and surface.rotate_deg == 0.0
+    text = "no header: each line is taken along y; if lines run along x from the top, set rotate_deg = -90"
+    return (text,) if assumed else ()
 
 
 def _listed(values: Any) -> Any:

@@ -23,6 +23,7 @@ from refimpl.measured.reading import (
     IMAGE,
     MAX_BYTES,
     MAX_POINTS,
+    PLAIN,
     UNITS,
     Overrides,
     RawHeights,
@@ -109,7 +110,7 @@ def _text(path: Path, given: Overrides, head: bytes) -> RawHeights:
     if columns == POINT and not table.is_sized:
         return points_map(path, table.rows, given, table.header, table.notes)
     if not table.header:
-        return _plain(path, checked(path, table.rows), given, "as a plain table of text", table)
+        return _plain(path, checked(path, table.rows), given, PLAIN, table)
     try:
         return _with_header(path, table, given)
     except InputError as refused:

@@ -34,6 +34,7 @@ _FAR = 10.0  # ranges of all other heights at which one value is no height of th
 
 ARRAY = "first index along x, second along y (upwards)"
 IMAGE = "lines along x, the first line at the top"
+PLAIN = "as a plain table of text"  # source: a text that states nothing about itself
 ALONG_Y = "lines along y, upwards, the first at the left"
 
 

@@ -68,7 +68,7 @@ class RoughnessFit:
     def toml(self, seed: int = 1) -> str:
         """Format the table as TOML, uncertainties as comments."""
         own, drawn = self.misfit
-        said = f"misfit {own:.2g}, of maps drawn from the fit {drawn:.2g} (rms of ln C, map over fit)"
+        said = f"misfit {own:.2g}, drawn maps {drawn:.2g} (rms of ln(C of the map / C of the fit))"
         lines = [f"# {note}" for note in (said, *self.notes)]
         for key, value in self.table(seed).items():
             names = ("lx", "ly") if key == "correlation_length" else (key,)

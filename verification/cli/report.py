@@ -35,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
     """Make the report and print its path; the exit status is about that, not about the verdicts in it."""
     from reports.evidence import departures, gathered
     from reports.generator import render
-    from reports.results import CaseDataError, ResultFileError
+    from reports.results import CaseDataError, ResultFileError, shown_counts
     from verification.output.files import write_text
     from verification.output.provenance import is_known
     from verification.output.result_files import name_of, result_paths
@@ -71,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
     except (FileExistsError, NotADirectoryError, PermissionError) as refused:
         raise refusal("--output", str(options.output), "a folder that can be written to") from refused
     write_text(page, path)
-    rows = [[status, str(number)] for status, number in results["counts"].items()]
+    rows = [[status, str(number)] for status, number in shown_counts(results["cases"]).items()]
     document = {"report": str(path), "counts": results["counts"], "departures": said}
     notes = [wrapped(text, "other than the code: ") for text in said]
     emit(document, options.json, "\n".join([columns(rows, indent=""), *notes, str(path.resolve())]))

@@ -66,9 +66,12 @@ def run(options: argparse.Namespace) -> int:
 
 
 def table(done: Run) -> str:
-    """Return one line per case, the reasons of those that did not pass, and the counts."""
-    rows = [[r.status, r.id, judgement(r), f"{r.seconds:.1f} s"] for r in done.results]
+    """Return one line per case, the reasons of those not judged, and the counts."""
+    from reports.results import shown_counts, shown_status
+
+    rows = [[shown_status(vars(r)), r.id, judgement(r), f"{r.seconds:.1f} s"] for r in done.results]
     reasons = [[r.id, r.note] for r in done.results if r.status in ("error", "unavailable")]
-    counts = ", ".join(f"{number} {status}" for status, number in done.counts.items())
+    counted = shown_counts(map(vars, done.results))
+    counts = ", ".join(f"{number} {status}" for status, number in counted.items())
     parts = [columns(rows, indent=""), columns(reasons), f"{counts}; {done.seconds:.0f} s"]
     return "\n\n".join(part for part in parts if part)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -230,6 +232,21 @@ def test_an_inspection_says_what_the_file_holds(tmp_path: Path) -> None:
     assert document["size"] == pytest.approx([256e-6, 300e-6])
     surface = rf.MeasuredSurface(tmp_path / "a.npy", unit="um", pixel_size=PIXEL, max_missing=0.1)
     assert rf.inspect_surface(surface).parameters["Sq"] == pytest.approx(np.nanstd(z), rel=0.05)
+
+
+def test_a_text_without_a_header_is_named_as_such_and_turned_by_the_angle_of_the_note(tmp_path: Path) -> None:
+    z = gaussian()[:60, :40] * 1e6
+    np.savetxt(tmp_path / "image.txt", z.T[::-1])  # lines along x, the first at the top
+    edges: dict[str, Any] = {"unit": "um", "pixel_size": 1e-6}
+    found = rf.inspect_surface(tmp_path / "image.txt", **edges)
+    (note,) = (note for note in found.document()["notes"] if "no header" in note)
+    degrees = float(re.findall(r"rotate_deg = (-?\d+)", note)[0])
+    turned = rf.inspect_surface(tmp_path / "image.txt", rotate_deg=degrees, **edges)
+    assert not [note for note in turned.document()["notes"] if "no header" in note]
+    np.save(tmp_path / "array.npy", z)
+    array = rf.inspect_surface(tmp_path / "array.npy", **edges)
+    assert not [note for note in array.document()["notes"] if "no header" in note]
+    np.testing.assert_allclose(turned.z, array.z, atol=1e-12)
 
 
 # --- fits ---

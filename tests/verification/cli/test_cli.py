@@ -102,6 +102,20 @@ def test_verify_without_a_pass_has_status_1(status: Status, monkeypatch: pytest.
     assert ("the reason" in printed) is (status is not Status.FAIL)
 
 
+def test_a_tolerance_set_from_the_result_is_recorded_as_in_the_report(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made = [
+        Case(f"a/{k}", "t", "c", "s", Metric.EQUAL, 0.0, reason, lambda: Measured(1.0, 1.0)).run()
+        for k, reason in enumerate(("exact", "recorded: 1.0"))
+    ]
+    monkeypatch.setattr(runner, "run", lambda *_, **__: runner.Run(Tier.QUICK, (), tuple(made), 0.0))
+    printed = shown(f"verify --only {QUICK}")
+    assert re.search(r"^pass +a/0", printed, flags=re.M)
+    assert re.search(r"^recorded +a/1", printed, flags=re.M)
+    assert "1 pass, 1 recorded, 0 fail, 0 error, 0 unavailable" in printed
+
+
 def test_list_runs_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr(runner, "run")
     assert [c["id"] for c in answer("verify --list --tier full")] == [c.id for c in registry.load()]
