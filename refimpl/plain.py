@@ -170,14 +170,14 @@ class Model(SimpleNamespace):
         return "contact did not settle"
 
     def settle(self, active: Array | None) -> None:
-        """Solve for pressures and slopes by turns, slopes mixed from six of them (Anderson 1965)."""
-        slopes: list[Array] = []
-        changes: list[Array] = []
+        """Solve for pressures and slopes by turns until noise is left, slopes mixed of 6 (Anderson 1965)."""
+        slopes, changes = list[Array](), list[Array]()
         for _ in range(300 if self.slopes else 1):
             self.ended = self.exchange(active)
             new = self.deformed_slopes() if self.slopes else self.tan
             slopes, changes = [*slopes[-5:], new.ravel()], [*changes[-5:], (new - self.tan).ravel()]
-            if abs(changes[-1]).max() <= 10 * ROUNDING * abs(new).max():
+            noise = np.finfo(float).eps * self.a * (abs(self.J) @ self.f).max() / min(self.spacing)
+            if abs(changes[-1]).max() <= max(10 * ROUNDING * abs(new).max(), noise):
                 return
             if len(changes) > 1:
                 mix = np.linalg.lstsq(np.diff(changes, axis=0).T, changes[-1], rcond=None)[0]
