@@ -1,6 +1,7 @@
 """Write `out/pages`, from which MkDocs makes the site: committed pages, their sources, options, packages."""
 
 import argparse
+import json
 import re
 import shutil
 from collections.abc import Iterator
@@ -87,9 +88,19 @@ def options(command: argparse.ArgumentParser) -> Iterator[str]:
     yield from (line for found in below for line in options(found))
 
 
+def described(notebook: Path) -> str:
+    """Return a notebook's page with the alternative texts of its figures, which its cells have."""
+    cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+    texts = iter([cell["metadata"]["alt"] for cell in cells if "alt" in cell["metadata"]])
+    page = (OUT / notebook.with_suffix(".md")).read_text(encoding="utf-8")
+    return re.sub(r"(?<=!\[)png(?=\])", lambda _: next(texts), page)
+
+
 if __name__ == "__main__":
     for folder in ("docs", "reports/results"):
         shutil.copytree(folder, OUT / folder, dirs_exist_ok=True)
     for name, text in pages():
         (OUT / name).parent.mkdir(parents=True, exist_ok=True)
         (OUT / name).write_text(text, encoding="utf-8")
+    for notebook in Path("docs/notebooks").glob("*.ipynb"):
+        (OUT / notebook.with_suffix(".md")).write_text(described(notebook), encoding="utf-8")
