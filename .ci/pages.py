@@ -1,6 +1,7 @@
 """Write `out/pages`, from which MkDocs makes the site: committed pages, their sources, options, packages."""
 
 import argparse
+import ast
 import json
 import re
 import shutil
@@ -71,8 +72,16 @@ def pages() -> Iterator[tuple[str, str]]:
             "{heading_level: 1}", f"\n      heading_level: 1{members * (name == 'refimpl')}"
         )
         yield f"api/{name}.md", "\n\n".join([package % name, *modules])
-    listed = "".join(f"- [{name}]({name}.md)\n" for name in packages)
-    yield "api/README.md", f"# Functions and classes\n\nSI units; fields: shape `(Mx, My)`.\n\n{listed}"
+    listed = "".join(f"| [{name}]({name}.md) | {summary(start)} |\n" for name, start in packages.items())
+    head = "SI units; fields: shape `(Mx, My)`. Users need `refimpl`.\n\n| package | content |\n|---|---|\n"
+    yield "api/README.md", f"# Functions and classes\n\n{head}{listed}"
+
+
+def summary(package: Path) -> str:
+    """Return the first paragraph of a package's docstring as one cell."""
+    source = (package / "__init__.py").read_text(encoding="utf-8")
+    first = (ast.get_docstring(ast.parse(source)) or "").split("\n\n")[0]
+    return " ".join(first.split()).replace("|", r"\|").rstrip(".:")
 
 
 def options(command: argparse.ArgumentParser) -> Iterator[str]:
