@@ -1,6 +1,8 @@
 """Write `out/pages`, from which MkDocs makes the site: committed pages, their sources, options, packages."""
 
 import argparse
+import ast
+import json
 import re
 import shutil
 from collections.abc import Iterator
@@ -70,8 +72,16 @@ def pages() -> Iterator[tuple[str, str]]:
             "{heading_level: 1}", f"\n      heading_level: 1{members * (name == 'refimpl')}"
         )
         yield f"api/{name}.md", "\n\n".join([package % name, *modules])
-    listed = "".join(f"- [{name}]({name}.md)\n" for name in packages)
-    yield "api/README.md", f"# Functions and classes\n\nSI units; fields: shape `(Mx, My)`.\n\n{listed}"
+    listed = "".join(f"| [{name}]({name}.md) | {summary(start)} |\n" for name, start in packages.items())
+    head = "SI units; fields: shape `(Mx, My)`. Users need `refimpl`.\n\n| package | content |\n|---|---|\n"
+    yield "api/README.md", f"# Functions and classes\n\n{head}{listed}"
+
+
+def summary(package: Path) -> str:
+    """Return the first paragraph of a package's docstring as one cell."""
+    source = (package / "__init__.py").read_text(encoding="utf-8")
+    first = (ast.get_docstring(ast.parse(source)) or "").split("\n\n")[0]
+    return " ".join(first.split()).replace("|", r"\|").rstrip(".:")
 
 
 def options(command: argparse.ArgumentParser) -> Iterator[str]:
@@ -87,9 +97,19 @@ def options(command: argparse.ArgumentParser) -> Iterator[str]:
     yield from (line for found in below for line in options(found))
 
 
+def described(notebook: Path) -> str:
+    """Return a notebook's page with the alternative texts of its figures, which its cells have."""
+    cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+    texts = iter([cell["metadata"]["alt"] for cell in cells if "alt" in cell["metadata"]])
+    page = (OUT / notebook.with_suffix(".md")).read_text(encoding="utf-8")
+    return re.sub(r"(?<=!\[)png(?=\])", lambda _: next(texts), page)
+
+
 if __name__ == "__main__":
     for folder in ("docs", "reports/results"):
         shutil.copytree(folder, OUT / folder, dirs_exist_ok=True)
     for name, text in pages():
         (OUT / name).parent.mkdir(parents=True, exist_ok=True)
         (OUT / name).write_text(text, encoding="utf-8")
+    for notebook in Path("docs/notebooks").glob("*.ipynb"):
+        (OUT / notebook.with_suffix(".md")).write_text(described(notebook), encoding="utf-8")

@@ -1,0 +1,1 @@
+"""Appendix A of the paper: errors of flat influence coefficients on rough boundaries."""

@@ -11,7 +11,15 @@ from typing import Any
 
 from reports.evidence import gathered
 from reports.result_tables import RUN
-from reports.result_tables.code import accuracy_costs, checks, codes, costs, coverage, studies
+from reports.result_tables.code import (
+    accuracy_costs,
+    checks,
+    codes,
+    costs,
+    coverage,
+    coverage_of_others,
+    studies,
+)
 from reports.result_tables.paper import claims, hertz, table_3
 from verification.output.result_files import read_results
 
@@ -41,6 +49,7 @@ def page(documents: Mapping[str, Any]) -> str:
         checks(documents, evidence),
         studies(documents),
         codes(documents["cross_code"]),
+        coverage_of_others(documents),
     )
     return "\n\n".join([INTRODUCTION, *sections]) + "\n"
 

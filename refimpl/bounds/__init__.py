@@ -1,0 +1,1 @@
+"""Proven bounds of pressures, approach and load of a discrete problem."""

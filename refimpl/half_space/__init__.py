@@ -1,0 +1,1 @@
+"""Errors of the half-space on steep slopes: of influence coefficients and of whole contacts."""

@@ -1,0 +1,1 @@
+"""The model's equations on a grid: problem, elasticity, friction law, slopes, forces, certificate."""

@@ -1,0 +1,1 @@
+"""Influence of tractions on displacements: matrices, transforms, preconditioner."""

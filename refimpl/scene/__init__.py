@@ -1,0 +1,1 @@
+"""Scenes: bodies, materials, TOML files, and the discrete problem made of them."""

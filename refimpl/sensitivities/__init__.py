@@ -1,0 +1,1 @@
+"""Derivatives of mu, A, p_max and Q by parameters, and the uncertainty budget."""

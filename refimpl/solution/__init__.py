@@ -1,0 +1,1 @@
+"""The result of a solve: numbers, error bars, warnings, contact patches, export."""

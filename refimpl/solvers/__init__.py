@@ -1,0 +1,1 @@
+"""Solvers on one grid: the production solver (FFT) and the paper's own scheme."""

@@ -88,7 +88,7 @@ def _counted(items: Sequence[Judged]) -> str:
     return (
         f"Of {len(items)} statements of the paper (Karpenko and Akay 2001, text converted by machine): "
         f"{listed}. "
-        "The others are in the report (`make report`)."
+        "Listed are those that do not hold as printed or need conditions; `make report` shows all."
     )
 
 

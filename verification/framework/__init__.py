@@ -1,0 +1,1 @@
+"""Cases, their registry, runner and results."""

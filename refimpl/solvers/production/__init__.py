@@ -1,0 +1,1 @@
+"""The FFT solver: nested grids, projected conjugate gradients, lagged shear and slopes."""
