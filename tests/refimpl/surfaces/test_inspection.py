@@ -203,7 +203,7 @@ def test_the_misfit_is_less_for_the_kind_that_the_map_is_of() -> None:
         fits = {kind: fit_roughness(z, PIXEL, kind, 8) for kind in draws}
         assert min(fits, key=lambda kind: fits[kind].misfit[0]) == own
         assert fits[own].misfit[0] < 1.0
-        assert f"# misfit {fits[own].misfit[0]:.2g}, of maps drawn" in fits[own].toml()
+        assert f"# misfit {fits[own].misfit[0]:.2g}, drawn maps" in fits[own].toml()
         assert [kind for kind in draws if "warning: the map is not" in fits[kind].toml()] == (
             ["gaussian"] if own == "self-affine" else []
         )
