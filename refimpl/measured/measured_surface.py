@@ -37,7 +37,7 @@ class MeasuredSurface(Surface):
        the file, are levelled one by one; ``low_pass`` and ``high_pass`` (m) filter the whole map;
     2. orientation: heights point out of the material, x to the right and y up as seen from outside.
        ``replica=True`` negates them; ``mirror="x"`` or ``"y"`` mirrors (x -> -x, y -> -y); ``rotate_deg``
-       turns them anticlockwise (unless by quarters interpolated, in the largest rectangle inside);
+       turns them anticlockwise (unless by quarters interpolated, in a rectangle inside);
        ``turn_over`` turns the specimen over about the x axis, z(x, y) -> -z(x, -y), by default where it is
        the upper body;
     3. window: the scene's domain about ``centre`` (m from the corner of the file's own area, by default its
@@ -126,6 +126,18 @@ class MeasuredSurface(Surface):
 
     @cached_property
     def _oriented(self) -> Oriented:
+        return self._laid(None)
+
+    def _under(self, lengths: tuple[float, float]) -> Oriented:
+        """Return the map as it lies under a domain, which a turned map may hold only in its own ratio."""
+        most = extent(self._oriented.reading, self._oriented.centre)
+        fits = all(edge <= (1 + ROUNDING) * whole for edge, whole in zip(lengths, most, strict=True))
+        if fits or self.rotate_deg % 90 == 0:
+            return self._oriented
+        found: Oriented = self._last("laid", lengths, partial(self._laid, lengths))
+        return found
+
+    def _laid(self, ratio: tuple[float, float] | None) -> Oriented:
         return oriented(
             replace(self.prepared, heights=self.height_scale * self.prepared.heights),
             replica=self.replica,
@@ -133,6 +145,7 @@ class MeasuredSurface(Surface):
             rotate_deg=self.rotate_deg,
             turned_over=self.turn_over is True,
             centre=self.centre,
+            ratio=ratio,
         )
 
     def on_upper_body(self) -> MeasuredSurface:
@@ -201,7 +214,8 @@ class MeasuredSurface(Surface):
         return resample_periodic(filled, x, y) - form(x, y)
 
     def _crop(self, lengths: tuple[float, float], offset: tuple[float, float] = (0.0, 0.0)) -> Crop:
-        reading, centre = self._oriented.reading, self._oriented.centre
+        laid = self._under(lengths)
+        reading, centre = laid.reading, laid.centre
         whole = Crop(reading, reading.area)
         window = whole if self.repeats else Crop(reading, lengths, offset, centre if self.centre else None)
         allowed = self.max_missing if self.missing == "fill" else 0.0
@@ -229,11 +243,11 @@ class MeasuredSurface(Surface):
     def levelled(self, lengths: tuple[float, float]) -> tuple[Form, Array, tuple[float, float]]:
         """Form of the window of those lengths (m) at offset 0, what is left of its points, their spacings."""
         _, form, rest = self._central(lengths)
-        return form, rest, self._oriented.reading.pixel
+        return form, rest, self._under(lengths).reading.pixel
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
-        name, reading = self._file.name, self._oriented.reading
-        window = self._crop(grid.lengths)
+        name, window = self._file.name, self._crop(grid.lengths)
+        reading = window.reading
         return (
             f"{name}: {size_text(reading.heights.shape)} points on {size_text(reading.area)} m, "
             f"read {reading.source}",
@@ -263,8 +277,8 @@ class MeasuredSurface(Surface):
         """Return the notes on preparation, the form subtracted, filled points and doubtful sizes."""
         name, window = self._file.name, self._crop(grid.lengths)
         z, form, rest = self._central(grid.lengths)
-        pixel = self._oriented.reading.pixel
-        said = [f"{name}: {note}" for note in self._oriented.reading.notes]
+        pixel = window.reading.pixel
+        said = [f"{name}: {note}" for note in window.reading.notes]
         if self.level != "none":
             tilt = size_text(slope / edge for slope, edge in zip(form.slopes, pixel, strict=True))
             bent = "" if form.radius is None else f", radius {form.radius:.4g} m"
