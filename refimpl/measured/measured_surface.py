@@ -163,7 +163,10 @@ class MeasuredSurface(Surface):
         return other
 
     def parameters(self) -> dict[str, float]:
-        return {"height_scale": self.height_scale}
+        return {"height_scale": self.height_scale, "rotate_deg": self.rotate_deg}
+
+    def same_realisation(self, periodic: bool) -> tuple[str, ...]:
+        return ("height_scale",)
 
     def with_parameter(self, name: str, value: float) -> Self:
         return self._with(**{name: value})
