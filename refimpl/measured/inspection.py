@@ -175,7 +175,7 @@ class Inspection:
             "notes": [
                 *self.surface.prepared.notes,
                 *standing_out(self._filled, np.isfinite(self.z)),
-                *implausible_slope(self.z, self.pixel),
+                *(text for *_, text in implausible_slope(self.z, self.pixel)),
             ],
         }
 

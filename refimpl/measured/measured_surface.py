@@ -12,7 +12,6 @@ import numpy as np
 
 from refimpl.errors import InputError, require_number, require_one_of, require_size, size_text
 from refimpl.grid import Array, Grid
-from refimpl.measured.areal_parameters import implausible_slope
 from refimpl.measured.crop import ROUNDING, Crop, extent
 from refimpl.measured.detrending import Form, check_level, fit_form
 from refimpl.measured.missing_points import fill
@@ -277,7 +276,7 @@ class MeasuredSurface(Surface):
         return self._central(grid.lengths)[2], self._oriented.reading.pixel
 
     def notes(self, grid: Grid) -> tuple[str, ...]:
-        """Return the notes on preparation, the form subtracted, filled points and doubtful sizes."""
+        """Return the notes on preparation, the form subtracted, points that stand out and filled ones."""
         name, window = self._file.name, self._crop(grid.lengths)
         z, form, rest = self._central(grid.lengths)
         pixel = window.reading.pixel
@@ -289,8 +288,7 @@ class MeasuredSurface(Surface):
                 f"{name}: level {self.level!r} fitted in the window (slopes {tilt}{bent}) and subtracted; "
                 f"rms height there {np.nanstd(z):.4g} m before, {np.nanstd(rest):.4g} m after"
             )
-        doubts = *standing_out(fill(rest, pixel), np.isfinite(rest)), *implausible_slope(rest, pixel)
-        said += [f"{name}: {note}" for note in doubts]
+        said += [f"{name}: {note}" for note in standing_out(fill(rest, pixel), np.isfinite(rest))]
         if window.lost:
             said.append(
                 f"{name}: {window.lost} of {window.size} points in the window are missing, filled in here"

@@ -71,7 +71,9 @@ def test_keep_going_runs_the_rest_and_leaves_failed_rows(
     assert failed == {"broken.txt", "lost.txt"}
     assert "lost.txt" in named["lost.txt"]["warnings"]
     assert "map3.txt" not in (folder / "n.svg").read_text()  # eight files are a mean with its scatter
-    assert "Warning" not in capfd.readouterr().err
+    printed = capfd.readouterr()
+    assert "files skipped       2" in printed.out
+    assert "Warning" not in printed.err
 
 
 def test_where_no_file_can_be_used_the_first_ones_reason_is_told(study: Path) -> None:
