@@ -61,10 +61,11 @@ def refine_until(
     """Solve grid after grid until the bar of ``quantity`` is within ``accuracy`` times its value.
 
     Numbers of elements along the longer side are ``slenderness`` times larger on a slender domain. Where
-    parts that no grid reduces (`unfalling`) exceed the accuracy, grids are refined until the rest is a
-    quarter of them, and no finer than the data allow. ``restored`` puts neglected terms back once they take
-    more than a quarter of what those parts leave. A grid that ``features_at`` refuses by `InputError` is
-    replaced by the next coarser one; one that is `Unfinished` ends the refinement, with a reason.
+    parts that no grid reduces (`unfalling`) exceed the accuracy, or leave too little of it, grids are refined
+    until the rest is a quarter of them, and no finer than the data allow. ``restored`` puts neglected terms
+    back once they take more than a quarter of what those parts leave. A grid that ``features_at`` refuses by
+    `InputError` is replaced by the next coarser one; one that is `Unfinished` ends the refinement, with a
+    reason.
     """
     data = data or DataShares()
     results = [features_at(M * slenderness) for M in FIRST_GRIDS]
@@ -81,14 +82,13 @@ def refine_until(
                 results[-1] = again
                 continue
         hopeless = reason_unreachable(stuck, value, accuracy) if least > accuracy else ""
-        aim = AIM * least if hopeless else accuracy
         remaining = [M for M in remaining if last < M]
+        if not hopeless and remaining and not refusal:
+            hopeless = too_fine(results, accuracy, quantity, least, max(remaining))
+        aim = max(accuracy, AIM * least) if hopeless else accuracy
         useful = [M for M in remaining if not hopeless or data.finest >= M]
-        if hopeless and (bound <= aim or not useful):
+        if hopeless and (bound <= aim or not useful or too_fine(results, aim, quantity, least, max(useful))):
             return Refinement(tuple(results), hopeless)
-        if useful and not refusal and (needed := least_size(results, aim, quantity)) > max(useful):
-            size = f"at least {needed:.2g} elements a side, more than {max(useful)}"
-            return Refinement(tuple(results), hopeless or f"by the bars so far it takes {size}")
         if not useful:
             return Refinement(tuple(results), refusal or f"at most {last} elements a side are tried")
         M = next_grid(results, aim, quantity, useful, data)
@@ -218,15 +218,19 @@ def _own_order(results: Sequence[GridFeatures], quantity: str) -> float:
     return min(max(math.log(coarse / fine) / math.log(refinement), 0.0), 1.0)
 
 
-def least_size(results: Sequence[GridFeatures], accuracy: float, quantity: str) -> float:
-    """Return the elements a side that an accuracy takes at least: bars fall at order 2 at most.
+def too_fine(results: Sequence[GridFeatures], accuracy: float, quantity: str, stuck: float, most: int) -> str:
+    """Return that an accuracy takes more than ``most`` elements a side, or nothing.
 
-    The size of the last grid where that cannot be said: before a third grid, or from bars beyond the number.
+    Bars fall to the share ``stuck`` at order 2 at most. Nothing can be said before a third grid, and from
+    bars beyond the number.
     """
-    size, bound = longer_side(results[-1]), relative_bound(results, quantity)
+    bound = relative_bound(results, quantity)
     if len(results) <= len(FIRST_GRIDS) or not 0 < bound < 1:
-        return size
-    return size * math.sqrt(bound / accuracy)
+        return ""
+    ratio = max(bound - stuck, 0.0) / (accuracy - stuck) if stuck < accuracy else math.inf
+    needed = longer_side(results[-1]) * math.sqrt(ratio)
+    said = f"at least {needed:.2g} elements a side, more than {most}"
+    return f"by the bars so far it takes {said}" if needed > most else ""
 
 
 def relative_bound(results: Sequence[GridFeatures], quantity: str) -> float:

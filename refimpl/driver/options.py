@@ -105,10 +105,9 @@ class Options:
             for k, part in enumerate(self.scene.parts(name)):
                 if part.pitch(self.scene.lengths) is None:
                     continue
-                doubts = implausible_slope(*part.data_points(self.solve_grid))
-                if doubts:
+                for *_, doubt in implausible_slope(*part.data_points(self.solve_grid)):
                     too_much = f"its {size_text(self.scene.lengths)} m do not bear {self.scene.load} N"
-                    allowed = f"heights of plausible slopes: {doubts[0]} ({too_much})"
+                    allowed = f"heights of plausible slopes: {doubt} ({too_much})"
                     raise InputError(f"{name}.surface[{k}]", part.label, allowed)
 
     def _check_strains(self) -> None:

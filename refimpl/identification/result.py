@@ -16,6 +16,17 @@ WIDE = 0.2  # relative half-width of tau's interval from which the warning appea
 
 OUTLIER = 3.0  # deviation from the fit to the other rows, in standard uncertainties
 
+MEGA = 1e6
+
+
+def scaled(name: str) -> tuple[str, float]:
+    """Label with a unit at the object's scale, and the unit.
+
+    >>> scaled("lower.material.hardness")
+    ('lower.material.hardness (MPa)', 1000000.0)
+    """
+    return (f"{name} (MPa)", MEGA) if name == "tau" or name.endswith("hardness") else (name, 1.0)
+
 
 @dataclass(frozen=True)
 class Interval:
@@ -76,10 +87,13 @@ class Identification:
     solves: int = 0
 
     def __repr__(self) -> str:
-        names = [*self.values, f"{self.factor:.3g} tau + beta"]
-        rows = zip(names, [*self.values.values(), self.combination], strict=True)
-        wide = max(map(len, names))
-        lines = [f"{name:<{wide}}  {one.value:.4g}  ({one.low:.4g} to {one.high:.4g})" for name, one in rows]
+        rows = [(*scaled(name), one) for name, one in self.values.items()]
+        rows.append((f"{self.factor * MEGA:.3g} tau/MPa + beta", 1.0, self.combination))
+        wide = max(len(label) for label, _, _ in rows)
+        cells = ((label, one.value / unit, one.low / unit, one.high / unit) for label, unit, one in rows)
+        lines = [
+            f"{label:<{wide}}  {value:.4g}  ({low:.4g} to {high:.4g})" for label, value, low, high in cells
+        ]
         lines += [f"load {p.load:.4g} N: mu {p.mu.value:.4g} ({p.mu.low:.4g} to {p.mu.high:.4g})"
                   for p in self.predictions]  # fmt: skip
         lines.append(f"chi-square {self.chi_square:.3g} of {self.degrees}; 95 % intervals by {self.method}")

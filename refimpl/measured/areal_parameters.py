@@ -51,15 +51,16 @@ def mean_square_slopes(z: Array, pixel: Pixel) -> Pixel:
     return x, y
 
 
-def implausible_slope(z: Array, pixel: Pixel) -> tuple[str, ...]:
-    """Return a note on an rms slope that a wrong unit of heights or pixel would make."""
+def implausible_slope(z: Array, pixel: Pixel) -> tuple[tuple[float, float, str], ...]:
+    """Return an rms slope that a wrong unit of heights or pixel would make, its bound, and a text."""
     slope = math.sqrt(sum(mean_square_slopes(z, pixel)))
     if slope == 0 or not math.isfinite(slope) or SLOPES[0] <= slope <= SLOPES[1]:
         return ()
     shown = "{:.4g} x {:.4g} m".format(*pixel)
-    return (
-        f"rms slope {slope:.2g}, beyond {SLOPES[0]:g} to {SLOPES[1]:g}: is the pixel {shown}, is unit right?",
+    text = (
+        f"rms slope {slope:.2g}, beyond {SLOPES[0]:g} to {SLOPES[1]:g}: is the pixel {shown}, is unit right?"
     )
+    return ((slope, SLOPES[slope > SLOPES[1]], text),)
 
 
 def material_ratio(z: Array, classes: int = CLASSES) -> tuple[Array, Array]:

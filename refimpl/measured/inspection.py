@@ -177,7 +177,7 @@ class Inspection:
                 *self.surface.prepared.notes,
                 *_unstated_axes(self.surface),
                 *standing_out(self._filled, np.isfinite(self.z)),
-                *implausible_slope(self.z, self.pixel),
+                *(text for *_, text in implausible_slope(self.z, self.pixel)),
             ],
         }
 

@@ -12,7 +12,6 @@ import numpy as np
 
 from refimpl.errors import InputError, require_number, require_one_of, require_size, size_text
 from refimpl.grid import Array, Grid
-from refimpl.measured.areal_parameters import implausible_slope
 from refimpl.measured.crop import ROUNDING, Crop, extent
 from refimpl.measured.detrending import Form, check_level, fit_form
 from refimpl.measured.missing_points import fill
@@ -37,7 +36,7 @@ class MeasuredSurface(Surface):
        the file, are levelled one by one; ``low_pass`` and ``high_pass`` (m) filter the whole map;
     2. orientation: heights point out of the material, x to the right and y up as seen from outside.
        ``replica=True`` negates them; ``mirror="x"`` or ``"y"`` mirrors (x -> -x, y -> -y); ``rotate_deg``
-       turns them anticlockwise (unless by quarters interpolated, in the largest rectangle inside);
+       turns them anticlockwise (unless by quarters interpolated, in a rectangle inside);
        ``turn_over`` turns the specimen over about the x axis, z(x, y) -> -z(x, -y), by default where it is
        the upper body;
     3. window: the scene's domain about ``centre`` (m from the corner of the file's own area, by default its
@@ -126,6 +125,18 @@ class MeasuredSurface(Surface):
 
     @cached_property
     def _oriented(self) -> Oriented:
+        return self._laid(None)
+
+    def _under(self, lengths: tuple[float, float]) -> Oriented:
+        """Return the map as it lies under a domain, which a turned map may hold only in its own ratio."""
+        most = extent(self._oriented.reading, self._oriented.centre)
+        fits = all(edge <= (1 + ROUNDING) * whole for edge, whole in zip(lengths, most, strict=True))
+        if fits or self.rotate_deg % 90 == 0:
+            return self._oriented
+        found: Oriented = self._last("laid", lengths, partial(self._laid, lengths))
+        return found
+
+    def _laid(self, ratio: tuple[float, float] | None) -> Oriented:
         return oriented(
             replace(self.prepared, heights=self.height_scale * self.prepared.heights),
             replica=self.replica,
@@ -133,6 +144,7 @@ class MeasuredSurface(Surface):
             rotate_deg=self.rotate_deg,
             turned_over=self.turn_over is True,
             centre=self.centre,
+            ratio=ratio,
         )
 
     def on_upper_body(self) -> MeasuredSurface:
@@ -150,7 +162,10 @@ class MeasuredSurface(Surface):
         return other
 
     def parameters(self) -> dict[str, float]:
-        return {"height_scale": self.height_scale}
+        return {"height_scale": self.height_scale, "rotate_deg": self.rotate_deg}
+
+    def same_realisation(self, periodic: bool) -> tuple[str, ...]:
+        return ("height_scale",)
 
     def with_parameter(self, name: str, value: float) -> Self:
         return self._with(**{name: value})
@@ -201,7 +216,8 @@ class MeasuredSurface(Surface):
         return resample_periodic(filled, x, y) - form(x, y)
 
     def _crop(self, lengths: tuple[float, float], offset: tuple[float, float] = (0.0, 0.0)) -> Crop:
-        reading, centre = self._oriented.reading, self._oriented.centre
+        laid = self._under(lengths)
+        reading, centre = laid.reading, laid.centre
         whole = Crop(reading, reading.area)
         window = whole if self.repeats else Crop(reading, lengths, offset, centre if self.centre else None)
         allowed = self.max_missing if self.missing == "fill" else 0.0
@@ -229,11 +245,11 @@ class MeasuredSurface(Surface):
     def levelled(self, lengths: tuple[float, float]) -> tuple[Form, Array, tuple[float, float]]:
         """Form of the window of those lengths (m) at offset 0, what is left of its points, their spacings."""
         _, form, rest = self._central(lengths)
-        return form, rest, self._oriented.reading.pixel
+        return form, rest, self._under(lengths).reading.pixel
 
     def describe(self, grid: Grid) -> tuple[str, ...]:
-        name, reading = self._file.name, self._oriented.reading
-        window = self._crop(grid.lengths)
+        name, window = self._file.name, self._crop(grid.lengths)
+        reading = window.reading
         return (
             f"{name}: {size_text(reading.heights.shape)} points on {size_text(reading.area)} m, "
             f"read {reading.source}",
@@ -260,11 +276,11 @@ class MeasuredSurface(Surface):
         return self._central(grid.lengths)[2], self._oriented.reading.pixel
 
     def notes(self, grid: Grid) -> tuple[str, ...]:
-        """Return the notes on preparation, the form subtracted, filled points and doubtful sizes."""
+        """Return the notes on preparation, the form subtracted, points that stand out and filled ones."""
         name, window = self._file.name, self._crop(grid.lengths)
         z, form, rest = self._central(grid.lengths)
-        pixel = self._oriented.reading.pixel
-        said = [f"{name}: {note}" for note in self._oriented.reading.notes]
+        pixel = window.reading.pixel
+        said = [f"{name}: {note}" for note in window.reading.notes]
         if self.level != "none":
             tilt = size_text(slope / edge for slope, edge in zip(form.slopes, pixel, strict=True))
             bent = "" if form.radius is None else f", radius {form.radius:.4g} m"
@@ -272,8 +288,7 @@ class MeasuredSurface(Surface):
                 f"{name}: level {self.level!r} fitted in the window (slopes {tilt}{bent}) and subtracted; "
                 f"rms height there {np.nanstd(z):.4g} m before, {np.nanstd(rest):.4g} m after"
             )
-        doubts = *standing_out(fill(rest, pixel), np.isfinite(rest)), *implausible_slope(rest, pixel)
-        said += [f"{name}: {note}" for note in doubts]
+        said += [f"{name}: {note}" for note in standing_out(fill(rest, pixel), np.isfinite(rest))]
         if window.lost:
             said.append(
                 f"{name}: {window.lost} of {window.size} points in the window are missing, filled in here"

@@ -53,11 +53,13 @@ def oriented(
     rotate_deg: float,
     turned_over: bool,
     centre: tuple[float, float] | None,
+    ratio: tuple[float, float] | None = None,
 ) -> Oriented:
     """Return a reading as it lies on its body: replica, mirror, rotation, turning over, in this order.
 
     ``centre`` (m) counts from the corner of the file's own measured area; None is its middle. By an angle
-    that is no multiple of 90 degrees heights are interpolated, on what `_turned` keeps.
+    that is no multiple of 90 degrees heights are interpolated, in the largest rectangle that the turned map
+    covers, or in the largest whose edges have a given ``ratio``.
 
     >>> import numpy as np
     >>> steps = RawHeights(np.array([[1.0, 2.0], [3.0, 4.0]]), (1.0, 1.0), "steps", "by hand")
@@ -80,22 +82,23 @@ def oriented(
         (dx, dy), (width, height) = (dy, dx), (height, width)
     found = Oriented(replace(reading, heights=z, pixel=(dx, dy)), (x, y))
     if angle:
-        found = _turned(found, math.radians(angle))
+        found = _turned(found, math.radians(angle), ratio)
     if turned_over:  # about the x axis: z(x, y) -> -z(x, -y)
         (x, y), reading = found.centre, found.reading
         found = Oriented(replace(reading, heights=-reading.heights[:, ::-1]), (x, found.reading.area[1] - y))
     return found
 
 
-def _turned(old: Oriented, angle: float) -> Oriented:
-    """Return a map turned anticlockwise about its middle by an acute angle (rad).
+def _turned(old: Oriented, angle: float, ratio: tuple[float, float] | None) -> Oriented:
+    """Return a map turned anticlockwise about its middle by an acute angle (rad), in a rectangle inside.
 
-    A cubic spline through the points is sampled on square pixels, of the longer of both edges, in the largest
-    rectangle that the turned map covers. A point whose nearest one was not measured is missing.
+    A cubic spline through the points is sampled on square pixels, of the longer of both edges. A point whose
+    nearest one was not measured is missing.
     """
     reading, cos, sin = old.reading, math.cos(angle), math.sin(angle)
     pixel, middle = max(reading.pixel), np.array(reading.area) / 2
-    counts = [int(length / pixel * (1 + 1e-9)) for length in _largest_inside(reading.area, angle)]
+    edges = _largest_inside(reading.area, angle) if ratio is None else _like(ratio, reading.area, angle)
+    counts = [int(length / pixel * (1 + 1e-9)) for length in edges]
     x, y = np.meshgrid(*(pixel * (np.arange(n) - (n - 1) / 2) for n in counts), indexing="ij", sparse=True)
     i = (cos * x + sin * y + middle[0]) / reading.pixel[0] - 0.5
     j = (cos * y - sin * x + middle[1]) / reading.pixel[1] - 0.5
@@ -110,8 +113,7 @@ def _turned(old: Oriented, angle: float) -> Oriented:
     away = np.array([[cos, -sin], [sin, cos]]) @ (np.array(old.centre) - middle)
     note = (
         f"turned by {math.degrees(angle):.4g} degrees, besides quarter turns: interpolated by cubics, which "
-        f"damp waves below three pixels, on the largest rectangle inside, "
-        f"{size_text(n * pixel for n in counts)} m"
+        f"damp waves below three pixels, on a rectangle inside, {size_text(n * pixel for n in counts)} m"
     )
     turned = replace(reading, heights=z, pixel=(pixel, pixel), notes=(*reading.notes, note))
     return Oriented(turned, (away[0] + turned.area[0] / 2, away[1] + turned.area[1] / 2))
@@ -129,3 +131,14 @@ def _largest_inside(area: tuple[float, float], angle: float) -> tuple[float, flo
         return edges if area[0] > area[1] else edges[::-1]
     share = cos**2 - sin**2
     return (area[0] * cos - area[1] * sin) / share, (area[1] * cos - area[0] * sin) / share
+
+
+def _like(ratio: tuple[float, float], area: tuple[float, float], angle: float) -> tuple[float, float]:
+    """Return the edges of the largest upright rectangle of a ratio in one of edges ``area``, turned likewise.
+
+    >>> [round(edge, 3) for edge in _like((1.0, 1.0), (2.0, 1.0), math.pi / 6)]
+    [0.732, 0.732]
+    """
+    cos, sin, (x, y) = math.cos(angle), math.sin(angle), ratio
+    share = min(area[0] / (x * cos + y * sin), area[1] / (x * sin + y * cos))
+    return share * x, share * y

@@ -75,7 +75,7 @@ def points_map(
     named = next((units for units in found if len(units) == POINT), None)
     own = given.unit or (named[-1] if named else None)
     if own is None:
-        allowed = f"one: {path.name} holds points x, y, z and states no unit"
+        allowed = f'one: {path.name} holds points x, y, z and states no unit (say unit = "um", or --unit um)'
         raise InputError("unit", None, allowed)
     heights, edges = on_grid(path, points)
     x, y = (UNITS[name] for name in (named or [own, own])[:2])

@@ -9,6 +9,7 @@ import numpy as np
 
 from refimpl.accuracy.digits import bar_of, digits_of, verdict
 from refimpl.grid import Array
+from refimpl.solution.model_warning import Notice
 from refimpl.solution.quantities import QUANTITIES
 from refimpl.solution.record import Record
 from refimpl.solution.units import printed_unit
@@ -26,12 +27,16 @@ def line(solution: Record) -> str:
 
 
 def table(solution: Record) -> str:
-    """Return the numbers with their errors, and the warnings."""
+    """Return the numbers with their errors, the warnings and the notes."""
     rows = _rows(solution)
     width, number = (max(len(row[k]) for row in rows) for k in (0, 1))
     head = f"status {solution.status.value}, {solution.grid} elements, method {solution.plan.method}"
     body = [f"  {name:{width}}  {value:{number}}  {unit}".rstrip() for name, value, unit in rows]
-    return "\n".join([head, *body, *(f"warning: {text}" for text in solution.warnings)])
+    return "\n".join([head, *body, *(f"{_kind(text)}: {text}" for text in solution.warnings)])
+
+
+def _kind(text: str) -> str:
+    return "note" if isinstance(text, Notice) else "warning"
 
 
 def html(solution: Record) -> str:

@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from refimpl.measured.areal_parameters import implausible_slope
+from refimpl.measured.measured_surface import MeasuredSurface
 from refimpl.model.friction import friction_coefficient_at
 from refimpl.model.materials import Material
 from refimpl.planning.plan import Plan
@@ -92,6 +94,10 @@ def _material(name: str, material: Material, tau: float) -> Iterator[ModelWarnin
 def _surface(name: str, scene: Scene) -> Iterator[ModelWarning]:
     shorter, longer = min(scene.lengths), max(scene.lengths)
     for part in scene.parts(name):
+        if isinstance(part, MeasuredSurface):
+            _, z, pixel = part.levelled(scene.lengths)
+            for slope, bound, text in implausible_slope(z, pixel):
+                yield _warning(slope, bound, f"{name}: {part.label}: {text}")
         if isinstance(part, Sphere) and abs(part.radius) < longer:
             said = f"{name}: radius {part.radius:.4g} m is below the domain's {longer:.4g} m: "
             unit = "is pixel_size, or the domain's size, in m (1 um is 1e-6)?"

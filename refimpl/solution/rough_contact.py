@@ -22,6 +22,7 @@ from refimpl.grid import Array, Grid
 from refimpl.scene.scene import Scene
 from refimpl.surfaces import Flat, Sphere
 
+_FINE = 768  # elements along the longer side at least; differences of neighbours err by 1 % of shortest waves
 _FARTHEST = 12.0  # spreads between the planes: areas are below 1e-30 of A0 from there on
 
 
@@ -115,9 +116,14 @@ def estimates(load: float, nominal_area: float, roughness: Roughness, modulus: f
 
 
 def estimates_of(scene: Scene, grid: Grid) -> tuple[Estimate, ...]:
-    """Return the estimates of a nominally flat scene's roughness as sampled on a grid, none of others."""
+    """Return the estimates of a nominally flat scene's roughness, none of others.
+
+    Roughness is sampled on the grid, or more finely without points of data: a coarse grid misses slopes.
+    """
     if scene.curvature != 0 or min(grid.shape) < 3:  # no curvatures
         return ()
+    if scene.pitch is None:
+        grid = scene.grid([n * math.ceil(_FINE / max(grid.shape)) for n in grid.shape])
     gap = sum(_rough(scene, "upper", grid), grid.zeros) - sum(_rough(scene, "lower", grid), grid.zeros)
     roughness, modulus = Roughness.of(gap, grid.spacings), scene.materials.reduced_modulus
     return estimates(scene.load, grid.nominal_area, roughness, modulus)

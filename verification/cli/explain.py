@@ -87,7 +87,7 @@ def _expectations(options: Options, plan: Plan) -> list[list[str]]:
         ["contact", f"about {share:.2%} of the domain, {contact.elements} of {grid} elements"],
         ["", f"(from at most 64 x 64 heights: within a factor of {WITHIN} on 25 rough scenes)"],
         ["mean pressure", f"{contact.mean_pressure / 1e6:.4g} MPa"],
-        ["approach", f"{contact.approach * 1e6:.4g} um"],
+        ["approach, from first contact", f"{contact.approach * 1e6:.4g} um"],
         ["window of possible contact", f"{window[0]} x {window[1]} elements (gap below twice the approach)"],
         ["mirror symmetry", "yes: no binormal force" if contact.mirrored else "none"],
         ["half-turn symmetry", "yes: effects of odd order vanish" if contact.symmetric else "none"],

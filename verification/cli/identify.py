@@ -22,7 +22,6 @@ from verification.output.text_table import columns, wrapped
 if TYPE_CHECKING:
     from refimpl.identification import Identification, Interval
 
-MEGA = 1e6
 EPILOG = """examples:
   rough-friction identify pair.toml friction.csv
   rough-friction identify pair.toml friction.csv --loads 5,80 --plot fit.png --json fit.json
@@ -139,15 +138,6 @@ def _interval(interval: Interval) -> dict[str, float | None]:
     return {"value": interval.value, "low": interval.low, "high": _finite(interval.high)}
 
 
-def _scaled(name: str) -> tuple[str, float]:
-    """Label with a unit at the object's scale, and the unit.
-
-    >>> _scaled("lower.material.hardness")
-    ('lower.material.hardness (MPa)', 1000000.0)
-    """
-    return (f"{name} (MPa)", MEGA) if name == "tau" or name.endswith("hardness") else (name, 1.0)
-
-
 def _cells(interval: Interval, unit: float = 1.0) -> list[str]:
     value, low, high = (f"{end / unit:.4g}" for end in (interval.value, interval.low, interval.high))
     return [value, f"{low} to {high}"]
@@ -155,7 +145,9 @@ def _cells(interval: Interval, unit: float = 1.0) -> list[str]:
 
 def table(found: Identification) -> str:
     """Return the values, parts of their uncertainty, rows, laws and warnings."""
-    scales = {name: _scaled(name) for name in found.values}
+    from refimpl.identification.result import MEGA, scaled
+
+    scales = {name: scaled(name) for name in found.values}
     values = [["", "value", "95 % interval"]]
     values += [[label, *_cells(found.values[name], unit)] for name, (label, unit) in scales.items()]
     values.append([f"{found.factor * MEGA:.3g} tau/MPa + beta", *_cells(found.combination)])

@@ -108,9 +108,9 @@ def _table(found: Mapping[str, list[Key]]) -> str:
     parts = []
     for title, keys in found.items():
         if keys:
-            rows = [
-                [key.name, key.unit, key.default, f"{key.meaning}; {key.allowed}".replace("`", "")]
-                for key in keys
-            ]
+            places = also_in(title.removeprefix("surface, "))
+            also = {name: f"; also in {where}" for name, where in places.items() if where}
+            texts = (f"{key.meaning}; {key.allowed}{also.get(key.name, '')}".replace("`", "") for key in keys)
+            rows = [[key.name, key.unit, key.default, text] for key, text in zip(keys, texts, strict=True)]
             parts.append(f"[{title}]\n{columns(rows)}")
     return "\n\n".join(parts) or "no key has this word; what is not modelled: docs/limits.md"

@@ -180,7 +180,8 @@ def _export(options: argparse.Namespace, done: Sweep, store: Path, failed: list[
     from verification.output.provenance import provenance
     from verification.sweep import export
 
-    table, rows = _table(done, store), [*done.table(), *failed]
+    skipped = len(failed) - len(done.failures) if failed else 0
+    table, rows = _table(done, store, skipped), [*done.table(), *failed]
     if options.csv == Path("-"):
         if done.failures or done.unconverged:
             print(table, file=sys.stderr)
@@ -205,11 +206,12 @@ def _export(options: argparse.Namespace, done: Sweep, store: Path, failed: list[
     emit(document, options.json, table)
 
 
-def _table(done: Sweep, store: Path) -> str:
+def _table(done: Sweep, store: Path, skipped: int) -> str:
     rows = [
         ["found in the store", str(done.found)],
         ["finished now", str(done.finished)],
         ["failed", str(len(done.failures))],
+        *([["files skipped", str(skipped)]] if skipped else []),
         *([status, str(number)] for status, number in sorted(done.statuses.items())),
     ]
     messages = [f"failed: {text}" for text in sorted(set(done.failures.values()))]

@@ -87,7 +87,7 @@ def uses(kind: str) -> dict[str, str]:
     for choice in range(len(SAMPLES[kind])):
         scene = scene_from_dict(sample_scene(kind, choice), Path())
         tables = {"vary": set(varied_names(scene)), "tolerances": set(differentiable_parameters(scene))}
-        for name in parameters(scene):
+        for name in dict.fromkeys((*parameters(scene), *varied_names(scene))):
             found[name] = ", ".join(table for table, names in tables.items() if name in names)
     return found
 

@@ -103,8 +103,8 @@ def _closest(study: Study) -> Iterator[Scene]:
 
 
 def _ends(axis: str, values: Sequence[Any]) -> tuple[Any, ...]:
-    """Return an axis' values closest to a limit: all files; one where limits do not depend on it."""
-    if axis.endswith(".path"):
+    """Return an axis' values closest to a limit: all files, all angles; one where no limit depends on it."""
+    if axis.endswith((".path", ".rotate_deg")):
         return tuple(values)
     if axis.endswith(".seed"):
         return tuple(values[:1])

@@ -165,7 +165,7 @@ def _changed(part: Table, own: Mapping[str, Any]) -> Table:
     """Return a surface's table with other values; ``key[j]`` is one of a list."""
     for name, value in own.items():
         key, _, place = name.partition("[")
-        old = part[key]
+        old = part.get(key, ())  # absent where it is the default
         new = [value if j == int(place[:-1]) else same for j, same in enumerate(old)] if place else value
         part = part | {key: new}
     return part

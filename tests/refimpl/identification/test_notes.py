@@ -90,6 +90,14 @@ def test_an_identification_of_a_linear_model(found: Identification) -> None:
         (spread, 1.959964 * spread), rel=1e-4
     )
     assert found.solves == 5 * found.passes + 5 + 2
+    printed = repr(found).splitlines()
+    assert [line.split("  ")[0] for line in printed[:3]] == [
+        "tau (MPa)",
+        "beta",
+        "lower.material.hardness (MPa)",
+    ]
+    assert [line.split()[2 if "MPa" in line else 1] for line in printed[:3]] == ["2e-06", "0.3", "200"]
+    assert "tau/MPa + beta" in printed[3]
 
 
 def laws(aic: float) -> dict[str, Any]:

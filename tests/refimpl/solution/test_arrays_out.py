@@ -18,6 +18,7 @@ from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.solution import display
 from refimpl.solution.arrays import as_dataset, attributes_of
+from refimpl.solution.model_warning import Notice
 from refimpl.solution.patches import patches_of
 from tests.changed import changed
 
@@ -106,13 +107,15 @@ FINE[2, 3], FINE[3, 64] = 8.0, 4.0
 MADE: Any = SimpleNamespace(
     **{name: row[0] for name, row in SHOWN.items()}, error=lambda name: SHOWN[name][1], pressure=FINE,
     traction=FINE, friction_force=-8.0,
-    plan=SimpleNamespace(method="dense"), status=rf.Status.CYCLED, grid="2 x 3", warnings=("a < b",),
+    plan=SimpleNamespace(method="dense"), status=rf.Status.CYCLED, grid="2 x 3",
+    warnings=(Notice("c > d"), "a < b"),
 )  # fmt: skip
 
 
 def test_the_table_has_each_number_in_its_unit() -> None:
-    head, *rows, last = display.table(MADE).splitlines()
-    assert (head, last) == ("status cycled, 2 x 3 elements, method dense", "warning: a < b")
+    head, *rows, note, last = display.table(MADE).splitlines()
+    assert head == "status cycled, 2 x 3 elements, method dense"
+    assert (note, last) == ("note: c > d", "warning: a < b")
     assert [" ".join(row.split()) for row in rows] == [row[3] for row in SHOWN.values()]
     assert display.line(MADE) == "<Solution cycled, 2 x 3: mu = 0.123 +- 0.002, A = 2.5 +- 0.3 mm^2>"
 
@@ -123,7 +126,7 @@ def test_the_map_has_x_to_the_right_and_y_up_and_the_maximum_of_each_cell() -> N
     squares = re.findall(r"x='(\d+)' y='(\d+)' .*? fill-opacity='([\d.]+)'", text)
     assert squares == [("0", "20", "1.00"), ("1", "0", "0.60")]
     assert "<svg width='15' viewBox='0 0 2 22'" in text  # 160 high
-    assert "<ul><li>a &lt; b</li></ul>" in text
+    assert "<ul><li>c &gt; d</li><li>a &lt; b</li></ul>" in text
 
 
 def test_a_file_has_settings_units_and_the_errors_that_there_are(oblong: rf.Solution) -> None:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 import refimpl as rf
@@ -176,3 +178,18 @@ def test_a_load_beyond_the_hardness_names_a_domain_of_nanometres() -> None:
     scene = rf.Scene(hard, hard, friction=rf.Friction(), load=10.0, size=(256e-9, 256e-9))
     with pytest.raises(rf.InputError, match="units of the map"):
         rf.solve(scene, 16)
+
+
+@pytest.mark.parametrize(
+    ("unit", "pixel", "bound"), [("m", 1e-6, 10.0), ("nm", 1e-3, 1e-4), ("um", 1e-6, None)]
+)
+def test_a_slope_of_a_wrong_unit_is_a_warning(
+    tmp_path: Path, unit: str, pixel: float, bound: float | None
+) -> None:
+    """White noise of 0.1 m, nm or um: the rms gradient is 0.2 over the pixel, 2e5, 2e-7 and 0.2."""
+    np.save(tmp_path / "a.npy", 0.1 * np.random.default_rng(2).normal(size=(40, 40)))
+    surface = rf.MeasuredSurface(tmp_path / "a.npy", unit=unit, pixel_size=pixel)
+    scene = with_body("lower", rf.Body(BRASS, surface), replace(SCENE, size=(40 * pixel, 40 * pixel)))
+    found: Any = [line for line in notes(scene) if "is unit right?" in line]
+    assert [(one.limit, one.allowed) for one in found] == ([] if bound is None else [(Limit.INPUT, bound)])
+    assert any("rms slope" in line for line in rf.inspect_surface(surface).document()["notes"]) == bool(bound)

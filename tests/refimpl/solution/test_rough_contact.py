@@ -72,6 +72,8 @@ def test_a_solved_contact_lies_near_both() -> None:
     assert 0.6 * solved.contact_area < persson.area < solved.contact_area_corrected * 1.1
     assert 0.6 * solved.contact_area < summit.area < 1.5 * solved.contact_area
     assert persson.mean_pressure == pytest.approx(load / persson.area)
+    coarse = estimates_of(scene, scene.grid(48))  # formulas are not sampled more coarsely for a coarser grid
+    assert [one.area for one in coarse] == pytest.approx([persson.area, summit.area], rel=5e-3)
     assert estimates_of(rf.read_scene("hertz"), GRID) == ()
     ball = rf.Scene(rf.Body(elastic, rf.Sphere(0.1)), bodies[1], rf.Friction(), load, 1e-3)
     assert estimates_of(ball, ball.grid(64)) == ()  # not nominally flat

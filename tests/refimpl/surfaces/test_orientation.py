@@ -167,6 +167,19 @@ def test_the_largest_domain_of_a_turned_map(tmp_path: Path) -> None:
     assert long.extent((0.0, 0.0)) == pytest.approx((23e-6, 40e-6))  # 20 / cos, 20 / sin
 
 
+def test_a_square_that_fits_a_turned_oblong_map_is_used(tmp_path: Path) -> None:
+    """The largest rectangle is 112 x 74 um; squares fit up to 80 um, and are the turned function."""
+    surface = written_ripple(tmp_path, (125, 95), rotate_deg=12)
+    assert min(surface.extent((0.0, 0.0))) < 75e-6
+    grid = Grid((40, 40), (79e-6, 79e-6))
+    x, y = from_middle(grid)
+    cos, sin = math.cos(math.radians(12)), math.sin(math.radians(12))
+    expected = ripple(cos * x + sin * y, cos * y - sin * x)
+    np.testing.assert_allclose(surface.heights(grid), expected, rtol=0, atol=2e-3 * np.ptp(expected))
+    with pytest.raises(rf.InputError, match=r"at most the measured 8e-05 x 8e-05 m of ripple\.npy"):
+        surface.heights(Grid((8, 8), (82e-6, 82e-6)))
+
+
 def test_missing_points_stay_missing_in_a_turned_map(tmp_path: Path) -> None:
     surface = written_ripple(tmp_path, (100, 100), hole=True, rotate_deg=45)
     notes = surface.notes(Grid((8, 8), (40e-6, 40e-6)))

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.measured import MeasuredSurface
@@ -165,18 +164,6 @@ def test_a_scene_takes_the_filtered_map(tmp_path: Path) -> None:
     solved = "\n".join(surface.notes(grid))  # among a solution's warnings
     assert all(word in solved for word in ("0 outliers", "below 6e-06", "within half of it, 2e-05 m,"))
     assert (table["low_pass"], table["high_pass"], table["outliers"]) == (6e-6, 40e-6, 9)
-
-
-@pytest.mark.parametrize(("unit", "pixel"), [("m", 1e-6), ("nm", 1e-3)])
-def test_a_slope_of_a_wrong_unit_is_a_note(tmp_path: Path, unit: str, pixel: float) -> None:
-    """White noise of 0.1 m or nm: the rms gradient is 0.2 over the pixel, 2e5 and 2e-7."""
-    np.save(tmp_path / "a.npy", 0.1 * np.random.default_rng(2).normal(size=(40, 40)))
-    surface = MeasuredSurface(tmp_path / "a.npy", unit=unit, pixel_size=pixel)
-    (note,) = (line for line in surface.notes(Grid.square(40 * pixel, 40)) if "rms slope" in line)
-    assert "is unit right?" in note
-    assert any("rms slope" in line for line in rf.inspect_surface(surface).document()["notes"])
-    right = MeasuredSurface(tmp_path / "a.npy", unit="um", pixel_size=1e-6)
-    assert not any("rms slope" in line for line in right.notes(Grid.square(40e-6, 40)))
 
 
 @pytest.mark.parametrize(

@@ -34,7 +34,7 @@ def test_the_pitch_of_points_is_their_own(tmp_path: Path, name: str) -> None:
     for other in ((1e-6, 1e-6), (2.03e-6, 3e-6), (2e-6, 3e-3)):
         with pytest.raises(InputError, match=r"pixel_size = .*, 2e-06 x 3e-06 m \(in one of the units\)"):
             read(tmp_path / name, unit="um", pixel_size=other)
-    with pytest.raises(InputError, match="holds points x, y, z and states no unit"):
+    with pytest.raises(InputError, match=r"holds points x, y, z and states no unit .*--unit um"):
         read(tmp_path / name)
 
 

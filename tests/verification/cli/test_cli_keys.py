@@ -88,7 +88,10 @@ def test_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["keys", "hurst"]) == 0
     printed = capsys.readouterr().out
     assert printed.startswith("[surface, self_affine]\n  hurst")
-    assert "0 < H <= 1" in printed
+    assert "0 < H <= 1; also in vary, tolerances" in " ".join(printed.split())
+    assert main(["keys", "measured"]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert printed.count("also in") == 3  # path, rotate_deg, height_scale
     assert main(["keys", "gaussian", "--json", "-"]) == 0  # the name of a table
     document = json.loads(capsys.readouterr().out)
     assert [key["name"] for key in document["surface, gaussian"]] == [

@@ -71,7 +71,9 @@ def test_keep_going_runs_the_rest_and_leaves_failed_rows(
     assert failed == {"broken.txt", "lost.txt"}
     assert "lost.txt" in named["lost.txt"]["warnings"]
     assert "map3.txt" not in (folder / "n.svg").read_text()  # eight files are a mean with its scatter
-    assert "Warning" not in capfd.readouterr().err
+    printed = capfd.readouterr()
+    assert "files skipped       2" in printed.out
+    assert "Warning" not in printed.err
 
 
 def test_where_no_file_can_be_used_the_first_ones_reason_is_told(study: Path) -> None:
@@ -87,3 +89,16 @@ def test_a_note_names_the_map_that_limits_the_domain_of_all(study: Path) -> None
     notes = read_study(study, keep_going=True).notes
     assert notes[0].startswith("no size given: 3.2e-05 x 2.4e-05 m")
     assert notes[0].endswith("by map5.txt; the largest scene has 6.4e-05 x 4.8e-05 m")
+
+
+def test_a_study_of_turns_and_height_scales_takes_the_domain_that_all_maps_cover(study: Path) -> None:
+    """Keys that the scene's file leaves at their defaults vary too; the smallest domain need be no end's."""
+    vary = '"lower.surface[0].height_scale" = [1.0, 1.1]\n"lower.surface[0].rotate_deg" = [0, 45, 90]\n'
+    study.write_text(f'scene = "scene.toml"\n[vary]\ngrid = 16\n{vary}')
+    found = read_study(study)
+    assert found.notes[0].startswith("no size given: 3.36e-05 x 3.36e-05 m")  # 48 um over sqrt(2)
+    surfaces = [run.inputs["scene"]["lower"]["surface"][0] for run in found.runs()]
+    assert [(one["rotate_deg"], one["height_scale"]) for one in surfaces[:4]] == [
+        (0, 1.0), (45, 1.0), (90, 1.0), (0, 1.1),
+    ]  # fmt: skip
+    assert main(["sweep", str(study), "--store", str(study.parent / "turns.sqlite"), "--workers", "1"]) == 0
