@@ -83,8 +83,7 @@ def smallest_symbol(aspect: float) -> float:
 def _alternating(t: Array) -> Array:
     """Return ``S(pi, t) = sum_j (-1)^j B_j(t) = sqrt(pi)/t (1 - 2 sum_m (-1)^m erfc((m + 1/2) t))``."""
     signs = np.where(_ODD % 4 == 1, 1.0, -1.0)
-    found: Array = math.sqrt(math.pi) / t * (1 - 2 * scipy.special.erfc(0.5 * np.outer(t, _ODD)) @ signs)
-    return found
+    return np.asarray(math.sqrt(math.pi) / t * (1 - 2 * scipy.special.erfc(0.5 * np.outer(t, _ODD)) @ signs))
 
 
 class EnergyNorm:

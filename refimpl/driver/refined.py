@@ -29,9 +29,8 @@ from refimpl.grid import Grid
 from refimpl.model.state import Status
 from refimpl.planning.plan import Plan
 from refimpl.scene.discretise import Discretiser
-from refimpl.solution.cost import Cost, total_cost
-from refimpl.solution.data_error import data_error, finest_by_data
-from refimpl.solution.evidence import Evidence
+from refimpl.solution.domain_error import data_error, finest_by_data
+from refimpl.solution.evidence import Cost, Evidence, total_cost
 from refimpl.solution.model_warning import Notice
 from refimpl.solution.solution import Solution, assemble
 

@@ -13,15 +13,21 @@ import numpy as np
 from refimpl.errors import InputError, require_number, require_one_of, require_size, size_text
 from refimpl.grid import Array, Grid
 from refimpl.measured.areal_parameters import implausible_slope
-from refimpl.measured.crop import ROUNDING, Crop, extent
+from refimpl.measured.crop import (
+    ROUNDING,
+    Crop,
+    Oriented,
+    check_orientation,
+    checked_centre,
+    extent,
+    oriented,
+)
 from refimpl.measured.detrending import Form, check_level, fit_form
 from refimpl.measured.missing_points import fill
-from refimpl.measured.orientation import Oriented, check_orientation, checked_centre, oriented
-from refimpl.measured.preparation import check_preparation, prepare
+from refimpl.measured.preparation import check_preparation, prepare, standing_out
+from refimpl.measured.reader_process import read_untrusted, refuse_huge
 from refimpl.measured.readers import UNITS, RawHeights, read
-from refimpl.measured.standing_out import standing_out
-from refimpl.measured.untrusted import read_untrusted, refuse_huge
-from refimpl.surfaces.bicubic import MEMORY, resample, resample_periodic
+from refimpl.surfaces.arrays import MEMORY, resample, resample_periodic
 from refimpl.surfaces.from_table import KINDS
 from refimpl.surfaces.surface import Surface, pixel_edges
 

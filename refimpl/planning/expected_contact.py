@@ -123,8 +123,7 @@ def _bearing(problem: Problem, stiffness: float, load: float) -> Mask:
 def _first(order: NDArray[np.intp], count: int, gap: Array) -> Mask:
     """Return the first ``count`` elements of an order, and those as low as the last of them."""
     last = order[min(count, order.size) - 1]
-    chosen: Mask = gap <= gap.flat[last] + _ROUNDING * np.ptp(gap)
-    return chosen
+    return np.asarray(gap <= gap.flat[last] + _ROUNDING * np.ptp(gap))
 
 
 def _rising(gap: Array) -> NDArray[np.intp]:
@@ -133,8 +132,7 @@ def _rising(gap: Array) -> NDArray[np.intp]:
 
 def _gradient_squared(problem: Problem) -> Array:
     slopes = _slopes(problem, problem.gap)
-    squared: Array = slopes.tan_x**2 + slopes.tan_y**2
-    return squared
+    return np.asarray(slopes.tan_x**2 + slopes.tan_y**2)
 
 
 def solved_contact(

@@ -11,8 +11,8 @@ from refimpl.model.certificate import Certificate
 from refimpl.model.slopes import Slopes
 from refimpl.model.state import Status
 from refimpl.planning.plan import Plan
-from refimpl.solution.cost import Cost
 from refimpl.solution.details import Details, part
+from refimpl.solution.evidence import Cost
 from refimpl.solution.limits import model_warnings
 from refimpl.solution.model_warning import ModelWarning, Notice
 from refimpl.solution.plausibility import notes

@@ -278,10 +278,8 @@ class _Scheme:
 
     def _apply_periodic(self, pressure: Array) -> Array:
         self.operator.counter.add("periodic", pressure.size)
-        result: Array = scipy.fft.irfft2(scipy.fft.rfft2(pressure) * self._periodic_hat, s=pressure.shape)
-        return result
+        return np.asarray(scipy.fft.irfft2(scipy.fft.rfft2(pressure) * self._periodic_hat, s=pressure.shape))
 
     def _invert(self, residual: Array) -> Array:
         self.operator.counter.add("periodic", residual.size)
-        result: Array = scipy.fft.irfft2(scipy.fft.rfft2(residual) / self._periodic_hat, s=residual.shape)
-        return result
+        return np.asarray(scipy.fft.irfft2(scipy.fft.rfft2(residual) / self._periodic_hat, s=residual.shape))

@@ -29,8 +29,7 @@ from refimpl.grid import Array, Mask, inner
 from refimpl.model.certificate import contact_residuals
 from refimpl.operators.preconditioner import Apply
 from refimpl.solvers.production.constants import CERTAINTY, FIRST_LENGTH, TRIAL_SHARE, TRUSTED, VANISHING
-from refimpl.solvers.production.contact_vectors import ContactVectors
-from refimpl.solvers.production.step_length import cut_at_zero, longest_step, step_share
+from refimpl.solvers.production.contact_vectors import ContactVectors, cut_at_zero, longest_step, step_share
 
 
 class Separation(NamedTuple):
