@@ -135,18 +135,13 @@ def _errors(
     if upper is not None:  # a crest of one body is a valley of the other
         bodies.append((upper, (positions + 0.5) % 1.0))
     tabulated = min(wavelength, _table()["wavelength"][-1])
-    rests = _rests(np.tan(slopes), tabulated, np.concatenate([at for _, at in bodies]))
+    along = _along_slopes(tabulated, tuple(np.concatenate([at for _, at in bodies])))
+    rests = along(np.maximum(np.tan(slopes), along.t[0]))  # (slopes, positions, 4)
     rough = np.zeros((len(slopes), len(positions), 2))
     for (body, at), rest in zip(bodies, np.split(rests, len(bodies), axis=1), strict=True):
         rough += _departure(np.tan(slopes), wavelength, at, body.nu, rest) / body.E
     flat = sum(_flat(body.nu) / body.E for body, _ in bodies)
     return np.asarray(np.abs(rough).max(axis=(1, 2)) / abs(flat))
-
-
-def _rests(tangents: Array, wavelength: float, positions: Array) -> Array:
-    """Return the table's parts at all slopes and positions, ``(slopes, positions, 4)``."""
-    along = _along_slopes(wavelength, tuple(positions))
-    return np.asarray(along(np.maximum(tangents, along.t[0])))
 
 
 @lru_cache(maxsize=16)

@@ -110,7 +110,7 @@ def _result(
         rows=rows,
         values=values,
         covariance=covariance * np.outer(units, units),
-        shares={name: _standard(part, units) for name, part in parts.items()},
+        shares={name: tuple(map(float, np.sqrt(np.diag(part)) * units)) for name, part in parts.items()},
         method="profile likelihood" if profile.is_bounded else "ellipse",
         factor=factor,
         combination=Interval(float(gradient @ fitted.theta), *profile.interval(gradient)),
@@ -169,10 +169,6 @@ def _values(fitted: Fit, profile: Likelihood, further: Sequence[str]) -> dict[st
 def _power(logarithm: float) -> float:
     """Return ``exp``, infinite where an interval is too wide for floating point."""
     return math.exp(logarithm) if logarithm < _LARGEST else math.inf
-
-
-def _standard(part: Array, units: Array) -> tuple[float, ...]:
-    return tuple(map(float, np.sqrt(np.diag(part)) * units))
 
 
 def _check(

@@ -80,7 +80,8 @@ class Profile:
         self.scale = np.sqrt(np.diag(covariance))
         self.centre = centre / self.scale
         self.precision = np.linalg.inv(covariance / np.outer(self.scale, self.scale))
-        self.optimum = self._optimum()
+        inside = [theta for _, theta, _ in self._faces() if np.all(theta[:BOUNDED] >= 0)]
+        self.optimum: Array = min(inside, key=self._misfit) * self.scale  # inside the bounds, or on a face
         self.least = self._misfit(self.optimum / self.scale)
 
     def _misfit(self, theta: Array) -> float:
@@ -99,11 +100,6 @@ class Profile:
                 pull = self.precision[np.ix_(free, at_zero)] @ self.centre[at_zero]
                 theta[free] = self.centre[free] + covariance @ pull
                 yield free, theta, covariance
-
-    def _optimum(self) -> Array:
-        """Return the optimum within the bounds: inside, or on one of their faces."""
-        inside = [theta for _, theta, _ in self._faces() if np.all(theta[:BOUNDED] >= 0)]
-        return np.asarray(min(inside, key=self._misfit) * self.scale)
 
     def on_line(self, gradient: Array, value: float) -> float:
         """Return the least misfit on ``gradient theta = value`` within the bounds; infinite outside them."""

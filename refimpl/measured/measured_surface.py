@@ -240,10 +240,11 @@ class MeasuredSurface(Surface):
     def describe(self, grid: Grid) -> tuple[str, ...]:
         name, reading = self._file.name, self._oriented.reading
         window = self._crop(grid.lengths)
+        about = "its middle" if self.centre is None else f"({self.centre[0]:g}, {self.centre[1]:g}) m"
         return (
             f"{name}: {size_text(reading.heights.shape)} points on {size_text(reading.area)} m, "
             f"read {reading.source}",
-            f"{name}: the window of {size_text(grid.lengths)} m about {self._about} is used, "
+            f"{name}: the window of {size_text(grid.lengths)} m about {about} is used, "
             f"{size_text(part.stop - part.start for part in window.points)} points, resampled bicubically to "
             f"{grid} elements",
             f"{name}: {reading.orientation}",
@@ -254,10 +255,6 @@ class MeasuredSurface(Surface):
     def file_notes(self) -> tuple[str, ...]:
         """Channel, orientation and what was changed in reading and preparing the file."""
         return (self.reading.orientation, *self.prepared.notes)
-
-    @property
-    def _about(self) -> str:
-        return "its middle" if self.centre is None else f"({self.centre[0]:g}, {self.centre[1]:g}) m"
 
     def pitch(self, lengths: tuple[float, float]) -> float:
         return min(self._oriented.reading.pixel)

@@ -104,7 +104,7 @@ class BlockMeans:
         parts = []
         for weights, rest in zip(self._weights, self._rests, strict=True):
             parts.append(left * weights)
-            left = _halved(left * rest) if len(parts) < len(self._weights) else left
+            left = _halved(_halved(left * rest).T).T if len(parts) < len(self._weights) else left
         found = parts.pop()
         while parts:
             found = parts.pop() + _repeated(found)
@@ -115,16 +115,12 @@ class BlockMeans:
 
     def _sums(self, field: Array) -> list[Array]:
         """Return the sums over blocks, from the least ones on."""
-        sums = [self._blocks(field)]
+        room = [(0, -n % 2**_LEVELS) for n in self._shape]  # zeros up to whole blocks
+        sums = [np.pad(field, room) if any(more for _, more in room) else field]
         for _ in range(_LEVELS):
             last = sums[-1][::2] + sums[-1][1::2]
             sums.append(last[:, ::2] + last[:, 1::2])
         return sums[_FINEST:]
-
-    def _blocks(self, field: Array) -> Array:
-        """Return the field with zeros up to whole blocks."""
-        room = [(0, -n % 2**_LEVELS) for n in self._shape]
-        return np.pad(field, room) if any(more for _, more in room) else field
 
 
 def _doubled(values: Array) -> Array:
@@ -133,11 +129,7 @@ def _doubled(values: Array) -> Array:
 
 
 def _halved(values: Array) -> Array:
-    """Return the transpose of `_doubled`."""
-    return _halved_rows(_halved_rows(values).T).T
-
-
-def _halved_rows(values: Array) -> Array:
+    """Return half as many rows: along both axes the transpose of `_doubled`."""
     found = 0.75 * (values[::2] + values[1::2])
     quarter = 0.25 * values
     found[:-1] += quarter[2::2]

@@ -37,8 +37,7 @@ from refimpl.sensitivities.difference_quotients import (
     difference_quotients,
     solved_again,
 )
-from refimpl.sensitivities.edge_motion import EdgeMotion
-from refimpl.sensitivities.fixed_contact import Answer, FixedContact, fixed_answer
+from refimpl.sensitivities.fixed_contact import Answer, EdgeMotion, FixedContact, fixed_answer
 from refimpl.solution.quantities import error_bound
 from refimpl.solution.solution import Solution
 

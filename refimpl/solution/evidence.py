@@ -90,7 +90,7 @@ class Evidence:
         lower -= self.state.displacement_lower
         upper += self.state.displacement_upper
         upper -= self.state.approach
-        return lower, upper
+        return read_only(lower), read_only(upper)
 
     @cached_property
     def slope_error(self) -> SlopeError:

@@ -18,6 +18,7 @@ from __future__ import annotations
 import math
 from copy import copy
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import scipy
@@ -239,12 +240,12 @@ class _Scheme:
 
     def _iterate(self, u: Array, inside: Mask, *, on_circle: bool) -> Mask:
         """Run (1b) periodic inversion or (1c) residual correction, with (1b') exclusion."""
-        flexibility = self._apply_periodic if on_circle else self._apply
+        flexibility = partial(self._on_circle, np.multiply) if on_circle else self._apply
         pressure = self.pressure * inside
         answer = flexibility(pressure)
         for _ in range(_STEPS):
             residual = (u - answer) * inside
-            step = self._invert(residual) * inside
+            step = self._on_circle(np.divide, residual) * inside
             moved = flexibility(step)
             curvature = inner(step, moved)
             if curvature <= 0:
@@ -276,10 +277,7 @@ class _Scheme:
     def _apply(self, pressure: Array) -> Array:
         return self.problem.elasticity.normal(self.operator, pressure)
 
-    def _apply_periodic(self, pressure: Array) -> Array:
-        self.operator.counter.add("periodic", pressure.size)
-        return np.asarray(scipy.fft.irfft2(scipy.fft.rfft2(pressure) * self._periodic_hat, s=pressure.shape))
-
-    def _invert(self, residual: Array) -> Array:
-        self.operator.counter.add("periodic", residual.size)
-        return np.asarray(scipy.fft.irfft2(scipy.fft.rfft2(residual) / self._periodic_hat, s=residual.shape))
+    def _on_circle(self, by: np.ufunc, values: Array) -> Array:
+        """Return the periodic product (`np.multiply`) or its inverse (`np.divide`)."""
+        self.operator.counter.add("periodic", values.size)
+        return np.asarray(scipy.fft.irfft2(by(scipy.fft.rfft2(values), self._periodic_hat), s=values.shape))

@@ -141,7 +141,8 @@ class ProjectedCG:
         if self._exchanged:
             self._exchange()
         residual = self._residual_on_contact()  # [PK 2]
-        direction = self._conjugate(residual, self._projected(self._preconditioned(residual)))  # [PK 3]
+        step = self._vectors.gather(self._precondition(self._vectors.scatter(residual)))
+        direction = self._conjugate(residual, self._projected(step))  # [PK 3]
         self._exchanged = False
         if not (self._trusted and self._step_to_trial(residual, direction)):
             self._step_then_cut(residual, direction)
@@ -176,9 +177,6 @@ class ProjectedCG:
             return values
         values -= (inner(self._weights, values) / self._norm) * self._weights
         return values
-
-    def _preconditioned(self, residual: Array) -> Array:
-        return self._vectors.gather(self._precondition(self._vectors.scatter(residual)))
 
     def _conjugate(self, residual: Array, step: Array) -> Array:
         product = inner(residual, step)

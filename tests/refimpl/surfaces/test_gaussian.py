@@ -13,7 +13,7 @@ import pytest
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.surfaces import GaussianRoughness, SurfaceWarning, gaussian
-from refimpl.surfaces.white_noise import white_noise
+from refimpl.surfaces.noise_lattice import white_noise
 
 SIDE, LENGTH = 1.61e-3, 104e-6
 GRID = Grid.square(SIDE, 64)
