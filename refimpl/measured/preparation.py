@@ -136,18 +136,12 @@ def _filtered(
             raise InputError(name, wavelength, f"at least two pixels of {reading.name}, each {own}")
         smooth = gaussian_filter(z, reading.pixel, wavelength, repeats)
         z = smooth if name == "low_pass" else z - smooth
-        border = (
-            ""
-            if repeats
-            else (
-                f"; within half of it, {wavelength / 2:.4g} m, of the border heights are biased: "
-                "a smaller size leaves that zone out"
-            )
-        )
-        notes.append(
-            f"wavelengths {'below' if name == 'low_pass' else 'above'} {wavelength:.4g} m were damped "
-            f"(Gaussian filter of ISO 16610, by half at that wavelength){border}"
-        )
+        said = f"wavelengths {'below' if name == 'low_pass' else 'above'} {wavelength:.4g} m were damped "
+        said += "(Gaussian filter of ISO 16610, by half at that wavelength)"
+        if not repeats:
+            said += f"; within half of it, {wavelength / 2:.4g} m, of the border heights are biased: "
+            said += "a smaller size leaves that zone out"
+        notes.append(said)
     z = z if high_pass is not None else z + plane
     return replace(reading, heights=np.where(np.isnan(reading.heights), np.nan, z), notes=tuple(notes))
 

@@ -214,10 +214,9 @@ class _Scheme:
             inside = inside | returning
             change = float(np.abs(self.pressure - before).max()) / max(float(self.pressure.max()), 1e-300)
             before = self.pressure
-            if not returning.any() and change <= _PRESSURE_SHARE * self.tolerance:
-                break
-            if self.exhausted:
-                self.settled = False
+            done = not returning.any() and change <= _PRESSURE_SHARE * self.tolerance
+            if done or self.exhausted:
+                self.settled &= done
                 break
         else:
             self.settled = False
@@ -260,10 +259,9 @@ class _Scheme:
             pressure = found
             self.trace.periodic_steps += on_circle
             self.trace.correction_steps += not on_circle
-            if change <= _PRESSURE_SHARE * self.tolerance * float(np.linalg.norm(found)):
-                break
-            if self.exhausted:
-                self.settled = False
+            done = change <= _PRESSURE_SHARE * self.tolerance * float(np.linalg.norm(found))
+            if done or self.exhausted:
+                self.settled &= done
                 break
         else:
             self.settled = False
