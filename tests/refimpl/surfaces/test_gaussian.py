@@ -193,3 +193,11 @@ def test_levels_of_the_autocorrelation() -> None:
 def test_bad_parameters_are_refused(changes: dict[str, Any], field: str) -> None:
     with pytest.raises(InputError, match=field):
         GaussianRoughness(**{"rms": 1.0, "correlation_length": 1.0, "seed": 2**63 - 1} | changes)
+
+
+def test_a_period_has_six_nodes_a_length_at_least() -> None:
+    """Of 18.2 nodes there are 19, which divide the period."""
+    nodes, _ = GaussianRoughness(rms=1e-6, correlation_length=0.33, seed=1).smoothing(
+        np.linspace(0, 1, 200), 1.0
+    )
+    assert nodes == range(19)
