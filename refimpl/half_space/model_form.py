@@ -35,6 +35,11 @@ SECOND_ORDER = {  # times tan^2 of the steepest slopes: what 24 finite-element c
     "max_pressure": 0.2,
     "binormal_force": 0.2,
 }
+_REST = 0.25  # N times tan^2: with 0.2, which is stated, the largest left by 24 finite-element contacts
+ALLOWED = 0.05  # stated error of N at a given approach
+_FIRST = 0.7  # N's error over the slope's tangent for nu = 0: 0.53 to 0.68 measured at 15 to 2.5 degrees
+_MARGIN = 1.5  # margin of the bound: 79 of 80 random contacts stay below it, the other states 0.6 %
+_AROUND = 32  # least margin of the window around the contact, elements
 
 
 @dataclass(frozen=True)
@@ -105,13 +110,6 @@ def model_form(
         (1 + FINITE_STRAIN) * by_approach + SECOND_ORDER["approach"] * left,
         (1 + FINITE_STRAIN) * by_force + SECOND_ORDER["normal_force"] * left,
     )
-
-
-_REST = 0.25  # N times tan^2: with 0.2, which is stated, the largest left by 24 finite-element contacts
-ALLOWED = 0.05  # stated error of N at a given approach
-_FIRST = 0.7  # N's error over the slope's tangent for nu = 0: 0.53 to 0.68 measured at 15 to 2.5 degrees
-_MARGIN = 1.5  # margin of the bound: 79 of 80 random contacts stay below it, the other states 0.6 %
-_AROUND = 32  # least margin of the window around the contact, elements
 
 
 def expected_error(problem: Problem) -> tuple[float, float]:

@@ -25,6 +25,9 @@ NAMES = ("friction.tau", "friction.beta")
 _FLOOR = 1e-4  # share of the friction below which a parameter is not solved for: slopes extrapolate to zero
 _QUANTILES = 64  # pressures that stand for a contact in other laws: mu to 1e-3
 _DIFFERENCE_SOLVES = 2  # solves that a derivative by the load, a hardness or a number of a surface takes
+Memory = MutableMapping[str, Mapping[str, Any]]
+Key = Callable[[Scene, Any], str]
+_ROUGHNESS = (".rms", ".rms_gradient")
 
 
 @dataclass(frozen=True)
@@ -62,10 +65,6 @@ class Response:
     def predict(self, theta: Array) -> float:
         """Return mu at other parameters, by the slopes."""
         return self.mu + float(np.dot(self.slopes, np.subtract(theta, self.at)))
-
-
-Memory = MutableMapping[str, Mapping[str, Any]]
-Key = Callable[[Scene, Any], str]
 
 
 class Forward:
@@ -191,9 +190,6 @@ def _condensed(solution: Solution, load: float) -> tuple[tuple[float, ...], tupl
     weights = tuple(float(along[group].sum()) for group in groups)
     means = tuple(float(np.average(pressure[group], weights=along[group])) for group in groups)
     return means, weights
-
-
-_ROUGHNESS = (".rms", ".rms_gradient")
 
 
 def further_parameters(scene: Scene, names: Sequence[str]) -> tuple[str, ...]:

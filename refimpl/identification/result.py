@@ -22,6 +22,10 @@ from refimpl.solution.model_warning import Limit
 WIDE = 0.2  # relative half-width of tau's interval from which the warning appears
 
 OUTLIER = 3.0  # deviation from the fit to the other rows, in standard uncertainties
+_SETTLED = 0.5  # standard uncertainties by which the last solves may differ from their prediction
+_UNITS = (9.81, *(10.0**n for n in range(1, 7)), 25.4, 180 / math.pi)  # kgf, powers of ten, inches, degrees
+_NEAR = 0.1  # relative, from such a factor: a wrong load changes the fit's mu as well
+_LEAST, _FULL = 0.005, 0.99  # A/A0 at every load; a ball's contact of 0.005 is 0.08 of the side wide
 
 
 @dataclass(frozen=True)
@@ -101,12 +105,6 @@ class Identification:
     def is_identified(self) -> bool:
         """False where tau's interval is too wide to be used apart from beta's."""
         return self.values["tau"].relative <= WIDE
-
-
-_SETTLED = 0.5  # standard uncertainties by which the last solves may differ from their prediction
-_UNITS = (9.81, *(10.0**n for n in range(1, 7)), 25.4, 180 / math.pi)  # kgf, powers of ten, inches, degrees
-_NEAR = 0.1  # relative, from such a factor: a wrong load changes the fit's mu as well
-_LEAST, _FULL = 0.005, 0.99  # A/A0 at every load; a ball's contact of 0.005 is 0.08 of the side wide
 
 
 def notes(result: Identification) -> tuple[str, ...]:

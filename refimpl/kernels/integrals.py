@@ -20,6 +20,8 @@ from refimpl.kernels.love import LOVE
 from refimpl.kernels.quadrature import NEAR, Kernel, across, order_for, shells
 
 Array = NDArray[np.float64]
+_NEAR_COUNT = int(np.ceil(NEAR / 2))  # offsets served by the closed form: 2i < NEAR
+_SLAB = 16384  # evaluations: 128 kB per temporary
 
 
 def normal_integral(x: ArrayLike, y: ArrayLike, dx: float, dy: float) -> Array:
@@ -96,10 +98,6 @@ def _evaluate(kernel: Kernel, x: Array, y: Array, dx: float, dy: float) -> Array
         integral[outer_x] = across(kernel.over_x, x[outer_x], y[outer_x], dx, dy, order)
         integral[outer_y] = across(kernel.over_y, y[outer_y], x[outer_y], dy, dx, order)
     return integral
-
-
-_NEAR_COUNT = int(np.ceil(NEAR / 2))  # offsets served by the closed form: 2i < NEAR
-_SLAB = 16384  # evaluations: 128 kB per temporary
 
 
 def normal_table(n: int, m: int, dx: float, dy: float | None = None, *, known: Array | None = None) -> Array:

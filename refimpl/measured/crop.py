@@ -16,6 +16,7 @@ from refimpl.measured.readers import RawHeights
 from refimpl.surfaces.arrays import MEMORY
 
 ROUNDING = 1e-9  # relative slack of lengths: far above double rounding, far below a pixel
+MIRRORS = ("x", "y")
 
 
 @dataclass(frozen=True)
@@ -95,9 +96,6 @@ def extent(
         for edge, at, moved in zip(reading.area, centre, offset, strict=True)
     )
     return x, y
-
-
-MIRRORS = ("x", "y")
 
 
 def check_orientation(mirror: object, rotate_deg: object, turn_over: object, repeats: bool) -> None:

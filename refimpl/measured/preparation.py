@@ -22,6 +22,8 @@ PERCENTILE_TO_RMS = 1.2816  # factor from the 80th percentile of absolute Gaussi
 MAD_TO_RMS = 1.4826  # from the median of absolute Gaussian distances to their rms
 _ROUNDING = 1e-9  # share of the rms height
 REACH = 1.5  # cut-off wavelengths of padding: the weight there is exp(-1.5^2 pi^2 / ln 2) = 1e-14
+FAR = 8.0  # spreads: of Gaussian distances one in 10^15 is farther
+_LEAST_LINES = 16  # lines from which their steps have a spread
 
 
 def check_preparation(
@@ -173,10 +175,6 @@ def _filled(reading: RawHeights) -> Array:
     if np.isnan(reading.heights).all():
         raise InputError("missing", f"all points of {reading.name}", "a measured point at least")
     return fill(reading.heights, reading.pixel)
-
-
-FAR = 8.0  # spreads: of Gaussian distances one in 10^15 is farther
-_LEAST_LINES = 16  # lines from which their steps have a spread
 
 
 def standing_out(z: Array, known: Mask) -> tuple[str, ...]:

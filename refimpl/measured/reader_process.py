@@ -36,6 +36,9 @@ _CODE = "from refimpl.measured.reader_process import serve; serve()"
 _LOCK = threading.Lock()
 _started: dict[int, subprocess.Popen[bytes]] = {}
 """The reader by the process that started it, of which a fork has none."""
+_HEAD = 4096  # bytes that tell a binary file
+_SMALL = 4_000_000  # bytes of text that take a second and 80 MB, whatever they are
+_NUMPY = b"\x93NUMPY"  # read by NumPy in Python, which does not crash
 
 
 def read_elsewhere(path: Path, load: Callable[[], T]) -> T:
@@ -113,11 +116,6 @@ def serve() -> None:
             faulthandler.cancel_dump_traceback_later()
             pickle.dump(found, answers)
             answers.flush()
-
-
-_HEAD = 4096  # bytes that tell a binary file
-_SMALL = 4_000_000  # bytes of text that take a second and 80 MB, whatever they are
-_NUMPY = b"\x93NUMPY"  # read by NumPy in Python, which does not crash
 
 
 def read_untrusted(path: Path, load: Callable[[], T]) -> T:

@@ -37,6 +37,27 @@ _FAR = 10.0  # ranges of all other heights at which one value is no height of th
 ARRAY = "first index along x, second along y (upwards)"
 IMAGE = "lines along x, the first line at the top"
 ALONG_Y = "lines along y, upwards, the first at the left"
+_PICTURE = "its brightness is not heights: export heights as text, .sur, .x3p or .gwy"
+_TABLE = "save the sheet as CSV"
+_MESH = "resample it on a grid and save points x, y, z as text"
+_MARKS = (
+    (b"\x89PNG", "a PNG picture", _PICTURE),
+    (b"\xff\xd8\xff", "a JPEG picture", _PICTURE),
+    (b"GIF8", "a GIF picture", _PICTURE),
+    (b"BM", "a BMP picture", _PICTURE),
+    (b"II*\0", "a TIFF picture", _PICTURE),
+    (b"MM\0*", "a TIFF picture", _PICTURE),
+    (b"%PDF", "a PDF document", "export heights as text, .sur, .x3p or .gwy"),
+    (b"\xd0\xcf\x11\xe0", "an Excel or OLE file", _TABLE),
+    (b"Gwyddion Simple Field", "a Gwyddion simple field (GSF)", "save it in Gwyddion as .gwy or as text"),
+    (b"solid ", "an STL mesh", _MESH),
+    (b"ply", "a PLY mesh", _MESH),
+    (b"\x1f\x8b", "a gzip archive", "unpack it"),
+    (b"7z\xbc\xaf", "a 7-Zip archive", "unpack it"),
+    (b"Rar!", "a RAR archive", "unpack it"),
+)
+_MEMBERS = (("xl/", "an Excel file (XLSX)", _TABLE), ("word/", "a Word file (DOCX)", _TABLE))
+_STL = 80, "<I", 50  # bytes of header, count of facets, bytes of each
 
 
 @dataclass(frozen=True)
@@ -152,29 +173,6 @@ def far_points(found: RawHeights) -> tuple[str, ...]:
             shown = f"{z.size - others.size} points are at {value / size:.6g} {found.unit}, {span}"
             notes.append(f"{shown}: if they are missing points, write nan there")
     return tuple(notes)
-
-
-_PICTURE = "its brightness is not heights: export heights as text, .sur, .x3p or .gwy"
-_TABLE = "save the sheet as CSV"
-_MESH = "resample it on a grid and save points x, y, z as text"
-_MARKS = (
-    (b"\x89PNG", "a PNG picture", _PICTURE),
-    (b"\xff\xd8\xff", "a JPEG picture", _PICTURE),
-    (b"GIF8", "a GIF picture", _PICTURE),
-    (b"BM", "a BMP picture", _PICTURE),
-    (b"II*\0", "a TIFF picture", _PICTURE),
-    (b"MM\0*", "a TIFF picture", _PICTURE),
-    (b"%PDF", "a PDF document", "export heights as text, .sur, .x3p or .gwy"),
-    (b"\xd0\xcf\x11\xe0", "an Excel or OLE file", _TABLE),
-    (b"Gwyddion Simple Field", "a Gwyddion simple field (GSF)", "save it in Gwyddion as .gwy or as text"),
-    (b"solid ", "an STL mesh", _MESH),
-    (b"ply", "a PLY mesh", _MESH),
-    (b"\x1f\x8b", "a gzip archive", "unpack it"),
-    (b"7z\xbc\xaf", "a 7-Zip archive", "unpack it"),
-    (b"Rar!", "a RAR archive", "unpack it"),
-)
-_MEMBERS = (("xl/", "an Excel file (XLSX)", _TABLE), ("word/", "a Word file (DOCX)", _TABLE))
-_STL = 80, "<I", 50  # bytes of header, count of facets, bytes of each
 
 
 def kind_of(path: Path, head: bytes) -> str | None:

@@ -16,6 +16,12 @@ from refimpl.measured.reading import unreadable
 _NUMBER = re.compile(r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eEdD][-+]?\d+)?")
 _WHOLE = re.compile(r"\d+")
 UNEVEN = 10  # values; of maps of ten smooth rows one in 300 has such a line, of longer or rougher ones none
+_GROUPED = r"[-+]?[1-9]\d{0,2}[.,]\d{3}"
+_THOUSANDS, _ROW = re.compile(_GROUPED), re.compile(rf"(?:{_GROUPED}[\s;]+)*{_GROUPED}[\s;]*")
+_GROUP = re.compile(r"[-+]?\d{1,3}")
+# 0.5, 1234.5, 1.32, 1.3205, 1.320e-3
+_DECIMAL = re.compile(r"(?<![\d.,])(?:0\d*[.,]|\d{4,}[.,]|\d*[.,](?:\d{0,2}(?!\d)|\d{4}|\d*[ed]))", re.I)
+_TIGHT = re.compile(r"\d,\d")
 
 
 def _counts(cells: list[str]) -> bool:
@@ -110,14 +116,6 @@ def _is_axis(first: Array, second: Array) -> bool:
     steady = (steps * steps[0] > 0).all() and not (other * steps[0] > 0).all()
     unlike = np.nanstd(second - first) >= first.std()
     return bool(_is_even(first, 1e-6) or (len(first) >= UNEVEN and steady and unlike))
-
-
-_GROUPED = r"[-+]?[1-9]\d{0,2}[.,]\d{3}"
-_THOUSANDS, _ROW = re.compile(_GROUPED), re.compile(rf"(?:{_GROUPED}[\s;]+)*{_GROUPED}[\s;]*")
-_GROUP = re.compile(r"[-+]?\d{1,3}")
-# 0.5, 1234.5, 1.32, 1.3205, 1.320e-3
-_DECIMAL = re.compile(r"(?<![\d.,])(?:0\d*[.,]|\d{4,}[.,]|\d*[.,](?:\d{0,2}(?!\d)|\d{4}|\d*[ed]))", re.I)
-_TIGHT = re.compile(r"\d,\d")
 
 
 def refuse_ambiguous(

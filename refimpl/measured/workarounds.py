@@ -28,6 +28,15 @@ _GWY_UNITS = b"si_unit_xy", b"si_unit_z"
 _GWY_FIELD = re.compile(rb"/\d+/data\0oGwyDataField\0(.{4})", re.DOTALL)
 _SUR_HEADER, _SUR_COMMENT = 512, "<hh"
 _SUR_LENGTHS_AT = 314  # bytes: lengths of comment and private zone
+_REVISION = "ISO5436 - 2000"  # the one text that the library takes
+_DATA = "bindata/data.bin"
+_LINKS = (("PointDataLink", "MD5ChecksumPointData"), ("ValidPointsLink", "MD5ChecksumValidPoints"))
+_MAP = {
+    "Record1/FeatureType": "SUR",
+    "Record1/Axes/CX/AxisType": "I",
+    "Record1/Axes/CY/AxisType": "I",
+    "Record3/MatrixDimension/SizeZ": "1",
+}
 
 
 def rewritten(path: Path, name: str | None, given: Overrides) -> tuple[Source, tuple[str, ...]]:
@@ -103,17 +112,6 @@ def wyko_header(path: Path, header: tuple[str, ...]) -> tuple[str, ...]:
     number = re.compile(r"^(Mult|Wavelength|Aspect|Pixel_size)\s+\d+\s")
     typed = tuple(number.sub(r"\1 7 ", line) for line in header)
     return typed if "Mult" in named else (typed[0], "Mult 7 2 1", *typed[1:])
-
-
-_REVISION = "ISO5436 - 2000"  # the one text that the library takes
-_DATA = "bindata/data.bin"
-_LINKS = (("PointDataLink", "MD5ChecksumPointData"), ("ValidPointsLink", "MD5ChecksumValidPoints"))
-_MAP = {
-    "Record1/FeatureType": "SUR",
-    "Record1/Axes/CX/AxisType": "I",
-    "Record1/Axes/CY/AxisType": "I",
-    "Record3/MatrixDimension/SizeZ": "1",
-}
 
 
 def _x3p(path: Path) -> tuple[str | io.BytesIO, tuple[str, ...]]:

@@ -19,6 +19,9 @@ from refimpl.grid import Array, Mask, Shape, resampled
 
 COARSER = 4  # elements per spacing
 _CELLS = 8  # cells of the coarse grid in a block
+KAPPA = 8.0  # CG steps on rough 512: 12 without means, 11 at 2, 9 at 4, 8 at 8, 9 at 16, 10 at 32
+_LEVELS = 5  # halvings, to blocks of 32
+_FINEST = 2  # halvings to the least blocks: those of 2 elements save no step
 
 
 class CoarseGrid(NamedTuple):
@@ -69,11 +72,6 @@ def _add_blocks(total: Array, blocks: Array) -> None:
         part = blocks[:, first : first + _CELLS]
         for row in range(part.shape[1]):
             total[first + row :: _CELLS][:n] += part[:, row]
-
-
-KAPPA = 8.0  # CG steps on rough 512: 12 without means, 11 at 2, 9 at 4, 8 at 8, 9 at 16, 10 at 32
-_LEVELS = 5  # halvings, to blocks of 32
-_FINEST = 2  # halvings to the least blocks: those of 2 elements save no step
 
 
 class BlockMeans:

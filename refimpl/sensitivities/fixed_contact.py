@@ -35,6 +35,10 @@ _STEP = 1e-4  # step of the quotient, in peak pressures: the error is slopes^2, 
 _TOLERANCE = 1e-6  # relative residual of GMRES: a thousandth of the accuracy of a derivative
 _RESTART, _CYCLES = 80, 5
 _FACETS = 4  # times: each leaves a hundredth of what slopes still change by (at 5 degrees; see the tests)
+_PARAMETER_STEP = 1e-4  # relative, of parameters: smooth at a fixed set, so the quotient errs by 1e-8
+_TIED = 1e-6  # share of p_max within which pressures tie: symmetric scenes, apart from slopes
+_SOLVED = 1e-3  # relative residual of a linear solve, at most: the digits of a derivative
+_WIDTHS = 5, 9  # elements over which the change at an edge is compared with that inside
 
 
 class LinearResponse(NamedTuple):
@@ -142,11 +146,6 @@ class FixedContact:
         return lower + upper, slopes.cosine_product, forces
 
 
-_PARAMETER_STEP = 1e-4  # relative, of parameters: smooth at a fixed set, so the quotient errs by 1e-8
-_TIED = 1e-6  # share of p_max within which pressures tie: symmetric scenes, apart from slopes
-_SOLVED = 1e-3  # relative residual of a linear solve, at most: the digits of a derivative
-
-
 @dataclass(frozen=True, eq=False)
 class Answer:
     """Derivatives at the fixed set: pressures (window's shape), their peak, F, Q and the approach.
@@ -208,9 +207,6 @@ def _changed(scene: Scene, base: Problem, changed: Scene) -> Problem:
         elasticity = replace(base.elasticity, pair=changed.materials)
         return replace(base, elasticity=elasticity, friction=changed.friction, load=changed.load)
     return discretise(changed, base.grid, base.terms)
-
-
-_WIDTHS = 5, 9  # elements over which the change at an edge is compared with that inside
 
 
 class EdgeMotion:

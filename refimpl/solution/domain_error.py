@@ -17,6 +17,11 @@ from refimpl.surfaces import Sphere
 from refimpl.surfaces.surface import Detail
 
 _MOST_OUTSIDE = 0.5  # share of the contact found
+MOST_ELEMENTS = 4  # between points of the data: the surface between them is interpolated, and smooth there
+_FACTOR = 1.5  # on that share: all errors of mu of ten maps that are self-affine to the pitch are covered
+_MOST_POINTS = 2048  # a side, of a map whose gradients are computed
+_LEAST_POINTS = 8  # along an axis, for a cubic through every second one
+_LEAST = 1e-6  # share of the mean square gradient that is worth a part of a bar
 
 
 def unseen_parts(problem: Problem, state: State, scene: Scene | None) -> Uncertainty:
@@ -56,12 +61,6 @@ def _by_area(problem: Problem, state: State, share: float) -> dict[str, float]:
     moved = dict.fromkeys(("contact_area", "plastic_area", "approach"), share)
     moved |= dict.fromkeys(("friction_coefficient", "friction_force"), of_mu * share)
     return moved | {"max_pressure": 2 * share}
-
-
-MOST_ELEMENTS = 4  # between points of the data: the surface between them is interpolated, and smooth there
-_FACTOR = 1.5  # on that share: all errors of mu of ten maps that are self-affine to the pitch are covered
-_MOST_POINTS = 2048  # a side, of a map whose gradients are computed
-_LEAST_POINTS = 8  # along an axis, for a cubic through every second one
 
 
 def data_error(scene: Scene, grid: Grid) -> float:
@@ -148,9 +147,6 @@ def _squared_gradient(z: Array, spacings: tuple[float, float], periodic: bool) -
         around = np.concatenate([values, values[: int(periodic)]])
         total += _mean_square(np.diff(around, axis=0)) / spacing**2
     return total
-
-
-_LEAST = 1e-6  # share of the mean square gradient that is worth a part of a bar
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,9 @@ from refimpl.grid import Array, Grid
 
 # A cubic spline's memory of a far data point fades by 2 - sqrt(3) = 0.268 a point; 0.268^32 = 5e-19.
 MEMORY = 32
+_ALLOWED = "a 2-D array of finite heights in m over the domain, indexed [i, j] along x, y"
+_SQUARE = 1.01  # ratio of a pixel's edges, up to which pixels without stated edges are taken for square
+_SPANS = 1e-6  # relative, between the array's stated size and the domain: rounding of typed lengths
 
 
 def resample(data: Array, x: Array, y: Array) -> Array:
@@ -38,11 +41,6 @@ def _spline(values: Array, at: Array) -> Array:
 def _reach(at: Array, n: int) -> slice:
     low, high = int(np.floor(at.min())) - MEMORY, int(np.ceil(at.max())) + MEMORY + 1
     return slice(max(min(low, n - 4), 0), min(max(high, 4), n))
-
-
-_ALLOWED = "a 2-D array of finite heights in m over the domain, indexed [i, j] along x, y"
-_SQUARE = 1.01  # ratio of a pixel's edges, up to which pixels without stated edges are taken for square
-_SPANS = 1e-6  # relative, between the array's stated size and the domain: rounding of typed lengths
 
 
 def checked(data: Any) -> Array:

@@ -33,6 +33,11 @@ from refimpl.surfaces.lay import Lay
 
 _TILE = 64
 STREAM = 0x726F7567686E6573  # the key's second word, ASCII "roughnes": keeps these streams apart from others
+DECAY = 2.3  # exponent of Eq. (9)
+NODES_PER_LENGTH = 6
+HALF_WIDTH = 17 / NODES_PER_LENGTH  # half-width of the kernel, in correlation lengths
+MAX_NODES = 8192  # an axis: 512 MiB of noise
+MAX_FAR = 1e6  # lattice spacings from the origin: rounding of x there moves heights by < 1e-9 rms
 
 
 def white_noise(seed: int, rows: range, columns: range, stream: int = STREAM) -> Array:
@@ -66,13 +71,6 @@ def _uniform_tile(seed: int, stream: int, p: int, q: int) -> Array:
 def _overlap(nodes: range, tile: int) -> tuple[slice, slice]:
     first, last = max(nodes.start, tile * _TILE), min(nodes.stop, (tile + 1) * _TILE)
     return slice(first - nodes.start, last - nodes.start), slice(first - tile * _TILE, last - tile * _TILE)
-
-
-DECAY = 2.3  # exponent of Eq. (9)
-NODES_PER_LENGTH = 6
-HALF_WIDTH = 17 / NODES_PER_LENGTH  # half-width of the kernel, in correlation lengths
-MAX_NODES = 8192  # an axis: 512 MiB of noise
-MAX_FAR = 1e6  # lattice spacings from the origin: rounding of x there moves heights by < 1e-9 rms
 
 
 @dataclass(frozen=True)
