@@ -201,3 +201,12 @@ def test_a_period_has_six_nodes_a_length_at_least() -> None:
         np.linspace(0, 1, 200), 1.0
     )
     assert nodes == range(19)
+
+
+def test_waves_of_a_period_beyond_the_last_add_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Noise belongs to wave numbers: half as many again leave the heights as they are."""
+    surface = GaussianRoughness(rms=1.0, correlation_length=(0.2, 0.1), seed=3, lay=0.4)
+    grid = Grid.square(1.0, 48, periodic=True)
+    z = surface.sample(grid)
+    monkeypatch.setattr(gaussian, "_REACH", 1.5 * gaussian._REACH)
+    np.testing.assert_allclose(surface.sample(grid), z, rtol=0, atol=1e-12)
