@@ -83,8 +83,7 @@ def smallest_symbol(aspect: float) -> float:
 def _alternating(t: Array) -> Array:
     """Return ``S(pi, t) = sum_j (-1)^j B_j(t) = sqrt(pi)/t (1 - 2 sum_m (-1)^m erfc((m + 1/2) t))``."""
     signs = np.where(_ODD % 4 == 1, 1.0, -1.0)
-    found: Array = math.sqrt(math.pi) / t * (1 - 2 * scipy.special.erfc(0.5 * np.outer(t, _ODD)) @ signs)
-    return found
+    return np.asarray(math.sqrt(math.pi) / t * (1 - 2 * scipy.special.erfc(0.5 * np.outer(t, _ODD)) @ signs))
 
 
 class EnergyNorm:
@@ -102,16 +101,14 @@ class EnergyNorm:
         # sums of |I| over all offsets are at most that of 1/rho over a rectangle of twice the lengths
         reach = normal_integral(np.zeros(1), np.zeros(1), 2 * grid.lengths[0], 2 * grid.lengths[1])
         self._reach = float(self._elasticity.symbol(reach)[0]) + self.lift * float(np.vdot(K, K))
-        self.floor = self._free_floor(grid) if displaced else self._periodic_floor(grid)
+        corner = np.array([smallest_symbol(grid.aspect) * grid.spacings[0]])
+        self.floor = float(self._elasticity.symbol(corner)[0]) if displaced else self._periodic_floor(grid)
         self._precondition = SpectralPreconditioner(
             self.operator, self._elasticity.symbol(self.operator.symbol)
         )
         impulse = np.zeros(K.shape)
         impulse[0, 0] = 1.0
         self.diagonal = float(self.apply(impulse)[0, 0])
-
-    def _free_floor(self, grid: Grid) -> float:
-        return float(self._elasticity.symbol(np.array([smallest_symbol(grid.aspect) * grid.spacings[0]]))[0])
 
     def _periodic_floor(self, grid: Grid) -> float:
         """Return ``e = mean + rest``: ``(K.e)^2 >= (mean K.mean e)^2 / 2 - (K.rest)^2``."""

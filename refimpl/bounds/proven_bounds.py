@@ -55,6 +55,7 @@ a number, is not.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -169,11 +170,15 @@ class _Frozen:
     def _split(self) -> None:
         """Set ``r`` with its dual norm, and ``f.p``."""
         touching: Mask = (self.w < self.norm.diagonal * self.f) | (self.w < 0)
+        self._set_residual(touching, np.minimum)
+        self.slack = float(np.vdot(self.f, self.w - self.r))
+
+    def _set_residual(self, touching: Mask, beyond: Callable[[Array, Array], Array]) -> None:
+        """Set ``r``, w on the contact and the allowed part ``beyond`` it, with its dual norm."""
         z, az = self.norm.solve(self.w, touching)
-        r = np.where(touching, self.w, np.minimum(self.w, az))
-        left = float(np.linalg.norm(r - az)) + self.norm.rounding(z) + self.noise
+        self.r = np.where(touching, self.w, beyond(self.w, az))
+        left = float(np.linalg.norm(self.r - az)) + self.norm.rounding(z) + self.noise
         self.residual = self.norm.norm(z) + left / math.sqrt(self.norm.floor)
-        self.r, self.slack = r, float(np.vdot(self.f, self.w - r))
 
     def distance(self) -> tuple[float, float]:
         """Return bounds on ``||e||`` and on the approach's error (m); infinite when (B2) does not close."""
@@ -226,11 +231,7 @@ class _Capped(_Frozen):
         """Set ``r`` with its dual norm; p is nowhere such that it costs."""
         at_cap: Mask = self.f >= self.problem.cap
         touching: Mask = self.between | np.where(at_cap, self.w > 0, self.w < 0)
-        z, az = self.norm.solve(self.w, touching)
-        allowed = np.where(at_cap, np.maximum(self.w, az), np.minimum(self.w, az))
-        self.r = np.where(touching, self.w, allowed)
-        left = float(np.linalg.norm(self.r - az)) + self.norm.rounding(z) + self.noise
-        self.residual = self.norm.norm(z) + left / math.sqrt(self.norm.floor)
+        self._set_residual(touching, lambda w, az: np.where(at_cap, np.maximum(w, az), np.minimum(w, az)))
         self.slack = 0.0
 
     def distance(self) -> tuple[float, float]:

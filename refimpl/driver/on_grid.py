@@ -19,12 +19,11 @@ from refimpl.operators.influence import whole_grid_influence
 from refimpl.planning.plan import Method, Plan
 from refimpl.planning.term_effects import effects_in
 from refimpl.scene.discretise import Discretiser
-from refimpl.solution.cost import Cost, total_cost
-from refimpl.solution.evidence import Evidence
+from refimpl.solution.evidence import Cost, Evidence, total_cost
 from refimpl.solvers.paper import solve_paper
 from refimpl.solvers.production.coarse_grids import InitialGuess
-from refimpl.solvers.production.fully_plastic import at_hardness
 from refimpl.solvers.production.nested_solver import solve_fft
+from refimpl.solvers.production.plastic import at_hardness
 
 Progress = Callable[[str], None]
 

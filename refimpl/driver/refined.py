@@ -29,9 +29,8 @@ from refimpl.grid import Grid
 from refimpl.model.state import Status
 from refimpl.planning.plan import Plan
 from refimpl.scene.discretise import Discretiser
-from refimpl.solution.cost import Cost, total_cost
-from refimpl.solution.data_error import data_error, finest_by_data
-from refimpl.solution.evidence import Evidence
+from refimpl.solution.domain_error import data_error, finest_by_data
+from refimpl.solution.evidence import Cost, Evidence, total_cost
 from refimpl.solution.model_warning import Notice
 from refimpl.solution.solution import Solution, assemble
 
@@ -115,11 +114,9 @@ class _Refinement:
         self.last: Evidence | None = None
         self._discretiser, self._progress = discretiser, progress
         self._tolerance, self.allowance = options.residual_tolerance, Allowance(options.limits)
-        self.data = DataShares(cache(self._data_left), finest_by_data(self.scene))
-
-    def _data_left(self, M: int) -> float:
-        """Return the share of the area that the data leave open on M elements along the longer side."""
-        return data_error(self.scene, self.scene.refined(M))
+        self.data = DataShares(
+            cache(lambda M: data_error(self.scene, self.scene.refined(M))), finest_by_data(self.scene)
+        )
 
     def until(self, features_at: Callable[[int], GridFeatures]) -> Refinement:
         return refine_until(

@@ -120,8 +120,7 @@ class _Body:
         nu = self.material.nu
         lifted = eta * (self.coupling * f + nu * (xx + yy)) / (1 - nu)
         rest = self.contact.grid.gradient(eta - inward)
-        change: Array = self._inward(pressure, shear) + lifted + u[0] * rest[0] + u[1] * rest[1]
-        return change
+        return np.asarray(self._inward(pressure, shear) + lifted + u[0] * rest[0] + u[1] * rest[1])
 
     def _facets(self, f: Array, along: Array) -> tuple[Array, Vector]:
         """Return the pressure and shear of the facets' tractions that the solution does not have (Pa)."""
@@ -146,8 +145,7 @@ class _Body:
     def _stress(self, strain: Array, other: Array, f: Array) -> Array:
         """Return the in-plane normal stress (Pa) along the axis of ``strain``, at the surface under f."""
         nu = self.material.nu
-        found: Array = self.modulus / (1 - nu**2) * (strain + nu * other) - nu / (1 - nu) * f
-        return found
+        return np.asarray(self.modulus / (1 - nu**2) * (strain + nu * other) - nu / (1 - nu) * f)
 
     def _inward(self, pressure: Array, shear: list[Array]) -> Array:
         """Return the displacement into a half-space (m) under a pressure and a shear; no mean."""
@@ -159,10 +157,8 @@ class _Body:
         return self._back(self.ik[0] * self._to(along_x) + self.ik[1] * self._to(along_y))
 
     def _to(self, values: Array) -> Complex:
-        found: Complex = scipy.fft.rfft2(values.astype(self.real, copy=False), self.shape)
-        return found
+        return np.asarray(scipy.fft.rfft2(values.astype(self.real, copy=False), self.shape))
 
     def _back(self, transform: Complex) -> Array:
         nx, ny = self.contact.grid.shape
-        found: Array = scipy.fft.irfft2(transform, self.shape)[:nx, :ny]
-        return found
+        return np.asarray(scipy.fft.irfft2(transform, self.shape)[:nx, :ny])

@@ -8,16 +8,17 @@ strip's own centre, in units of ``p a / E``, because a plane displacement has no
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import dataclass
 from functools import cache, lru_cache
+from importlib import resources
 
 import numpy as np
 import scipy
 
 from refimpl.errors import InputError, require_number
 from refimpl.grid import Array
-from refimpl.half_space.coefficient_tables import PLANE, shipped_table
 from refimpl.half_space.influence_error_3d import element_error, steepest_tabulated
 from refimpl.model.materials import Material, Pair
 from refimpl.model.slopes import Slopes
@@ -134,20 +135,13 @@ def _errors(
     if upper is not None:  # a crest of one body is a valley of the other
         bodies.append((upper, (positions + 0.5) % 1.0))
     tabulated = min(wavelength, _table()["wavelength"][-1])
-    rests = _rests(np.tan(slopes), tabulated, np.concatenate([at for _, at in bodies]))
+    along = _along_slopes(tabulated, tuple(np.concatenate([at for _, at in bodies])))
+    rests = along(np.maximum(np.tan(slopes), along.t[0]))  # (slopes, positions, 4)
     rough = np.zeros((len(slopes), len(positions), 2))
     for (body, at), rest in zip(bodies, np.split(rests, len(bodies), axis=1), strict=True):
         rough += _departure(np.tan(slopes), wavelength, at, body.nu, rest) / body.E
     flat = sum(_flat(body.nu) / body.E for body, _ in bodies)
-    worst: Array = np.abs(rough).max(axis=(1, 2)) / abs(flat)
-    return worst
-
-
-def _rests(tangents: Array, wavelength: float, positions: Array) -> Array:
-    """Return the table's parts at all slopes and positions, ``(slopes, positions, 4)``."""
-    along = _along_slopes(wavelength, tuple(positions))
-    parts: Array = along(np.maximum(tangents, along.t[0]))
-    return parts
+    return np.asarray(np.abs(rough).max(axis=(1, 2)) / abs(flat))
 
 
 @lru_cache(maxsize=16)
@@ -174,8 +168,7 @@ def _departure(tangents: Array, wavelength: float, positions: Array, nu: float, 
     climb = tangent * wavelength / (2 * math.pi) * (np.cos(2 * math.pi * at) - np.cos(ends))
     rest = tangent**2 * (1 + nu) * ((3 - 4 * nu) * parts[..., :2] + parts[..., 2:])
     rest = np.where(at > 0.5, rest[..., ::-1], rest)  # mirrored: the neighbours change places
-    departure: Array = rest - (1 + nu) * (1 - 2 * nu) * climb
-    return departure
+    return np.asarray(rest - (1 + nu) * (1 - 2 * nu) * climb)
 
 
 def _flat(nu: float) -> float:
@@ -186,7 +179,11 @@ def _flat(nu: float) -> float:
 
 @cache
 def _table() -> dict[str, Array]:
-    return shipped_table(PLANE)
+    """Return the table's axes and, over these, both parts of the rest."""
+    file = resources.files("refimpl").joinpath("data", "coefficient_error.json")
+    document = json.loads(file.read_text(encoding="utf-8"))
+    names = "slope_deg", "wavelength", "position", "offset", "kappa_part", "constant_part"
+    return {name: np.array(document[name]) for name in names}
 
 
 @cache
@@ -197,7 +194,9 @@ def _over_wavenumber() -> scipy.interpolate.BSpline:
     """
     table = _table()
     neighbours = [int(np.flatnonzero(table["offset"] == side * _NEIGHBOUR)[0]) for side in (-1, 1)]
-    parts = np.concatenate([table[part][..., neighbours] for part in PLANE.arrays], axis=-1)
+    parts = np.concatenate(
+        [table[part][..., neighbours] for part in ("kappa_part", "constant_part")], axis=-1
+    )
     rising = slice(None, None, -1)
     return scipy.interpolate.make_interp_spline(
         1 / table["wavelength"][rising], np.moveaxis(parts, 1, 0)[rising]

@@ -10,15 +10,17 @@ the self coefficient and those across are off by up to twice as much (tests of t
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import dataclass
 from functools import cache
+from importlib import resources
+from itertools import product
 
 import numpy as np
 
 from refimpl.errors import require_number
 from refimpl.grid import Array
-from refimpl.half_space.coefficient_tables import SPACE, shipped_table
 from refimpl.model.materials import Material
 
 _POSITIONS = (0.0, 0.25, 0.5)  # crest, flank, valley as the lower body sees them
@@ -79,12 +81,25 @@ def _errors(slope: float, nu: float) -> Array:
     rise = rises / np.diff(tangents, append=math.inf)[before]
     by_slope = rise * max(tangent - tangents[before], 0.0) + quotients[:, :, before]
     weights = [math.prod((nu - other) / (own - other) for other in ratios if other != own) for own in ratios]
-    found: Array = tangent / (1 - nu**2) * np.tensordot(weights, by_slope, axes=1)
-    return found
+    return np.asarray(tangent / (1 - nu**2) * np.tensordot(weights, by_slope, axes=1))
 
 
 @cache
 def _table() -> tuple[Array, Array, Array]:
     """Return the slopes (degrees), Poisson's ratios, and errors [ratio, position, slope, coefficient]."""
-    table = shipped_table(SPACE)
-    return table["slope_deg"], table["nu"], table["error"]
+    file = resources.files("refimpl").joinpath("data", "coefficient_error_3d.json")
+    points = json.loads(file.read_text(encoding="utf-8"))["points"]
+    found = {
+        (point["nu"], point["position"], point["slope_deg"]): point["error"]
+        for point in points
+        if (point["wavelength"], point["kind"], point["width"]) == (20.0, "ridge", "projected")
+    }
+    ratios, slopes = (sorted({key[axis] for key in found}) for axis in (0, 2))
+    places = list(product(ratios, _POSITIONS))
+    slopes = [slope for slope in slopes if all((*place, slope) in found for place in places)]
+    errors = [[found[(*place, slope)] for slope in slopes] for place in places]
+    return (
+        np.array(slopes),
+        np.array(ratios),
+        np.reshape(errors, (len(ratios), len(_POSITIONS), len(slopes), -1)),
+    )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -30,19 +31,17 @@ class Proposal:
 
 
 def trial_responses(
-    scene: Scene, rows: Sequence[Row], forward: Forward, theta: Array, realisations: int = 1
+    scene: Scene, rows: Sequence[Row], forward: Forward, theta: Array
 ) -> list[tuple[float, Response]]:
     """Return responses at trial loads below and above those measured, where the model is usable."""
     low, high = min(row.load for row in rows), max(row.load for row in rows)
     found = []
     for factor in FACTORS:
         load = factor * (low if factor < 1 else high)
-        try:
-            response = mean_response(draws(forward, replace(scene, load=load), theta, realisations))
-        except Error:
-            continue  # a load beyond the hardness, or one whose solve does not converge
-        if response.border <= MAX_BORDER:
-            found.append((load, response))
+        with suppress(Error):  # a load beyond the hardness, or one whose solve does not converge
+            response = mean_response(draws(forward, replace(scene, load=load), theta))
+            if response.border <= MAX_BORDER:
+                found.append((load, response))
     return found
 
 
@@ -64,7 +63,6 @@ def propose(
                 information = information + np.outer(slopes, slopes) / spread**2
             half = COVERAGE * np.sqrt(np.diag(np.linalg.inv(information)))[:BOUNDED]
             tau, beta = (h / t if t > 0 else np.inf for h, t in zip(half, theta[:BOUNDED], strict=True))
-            proposals.append(
-                (half[0], Proposal(tuple(load for load, _ in chosen), (float(tau), float(beta))))
-            )
+            loads = tuple(load for load, _ in chosen)
+            proposals.append((half[0], Proposal(loads, (float(tau), float(beta)))))
     return min(proposals, key=lambda item: item[0])[1] if proposals else None

@@ -49,14 +49,10 @@ def redrawn(scene: Scene, k: int) -> Scene:
 
 
 def draws(
-    forward: Forward,
-    scene: Scene,
-    theta: Array,
-    realisations: int,
-    tolerances: Mapping[str, float] | None = None,
+    forward: Forward, scene: Scene, theta: Array, tolerances: Mapping[str, float] | None = None
 ) -> list[Response]:
     """Return the response of each realisation of a scene at the same parameters."""
-    return [forward.respond(redrawn(scene, k), theta, tolerances) for k in range(realisations)]
+    return [forward.respond(redrawn(scene, k), theta, tolerances) for k in range(forward.realisations)]
 
 
 def mean_response(responses: Sequence[Response]) -> Response:

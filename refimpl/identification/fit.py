@@ -14,9 +14,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 from scipy.stats import chi2
 
@@ -25,8 +25,7 @@ from refimpl.grid import Array
 from refimpl.identification.data_table import Row
 from refimpl.identification.ensemble import Scatter, draws, mean_response, scatter, working_variances
 from refimpl.identification.forward import COVERAGE, Forward, Response
-from refimpl.identification.profile import BOUNDED, Profile
-from refimpl.identification.varying_profile import VaryingProfile
+from refimpl.identification.profile import BOUNDED, Indices, Likelihood, Profile, VaryingProfile
 from refimpl.scene.scene import Scene
 
 MAX_PASSES, MAX_FURTHER_PASSES = 6, 8  # without further parameters, and with them
@@ -79,15 +78,13 @@ class Fit:
         return max(len(self.root) - len(self.theta), 0)
 
 
-def fit_rows(
-    rows: Sequence[Row], scenes: Sequence[Scene], forward: Forward, start: Array, realisations: int = 1
-) -> Fit:
+def fit_rows(rows: Sequence[Row], scenes: Sequence[Scene], forward: Forward, start: Array) -> Fit:
     """Fit all parameters to the mean over realisations. Raises errors as the solves do."""
     theta, predicted, passes = start, None, 0
     most, agreed = (MAX_FURTHER_PASSES, _FURTHER_AGREED) if forward.further else (MAX_PASSES, _AGREED)
     while True:
         passes += 1
-        drawn = [draws(forward, scene, theta, realisations) for scene in scenes]
+        drawn = [draws(forward, scene, theta) for scene in scenes]
         between = working_variances(drawn, np.array([scene.load for scene in scenes]))
         responses = tuple(mean_response(row) for row in drawn)
         _check_slopes(responses, forward.further, theta)
@@ -104,11 +101,9 @@ def fit_rows(
 def _check_slopes(responses: Sequence[Response], further: Sequence[str], theta: Array) -> None:
     for j, name in enumerate(further, start=BOUNDED):
         if not any(response.slopes[j] for response in responses):
-            value = math.exp(theta[j])
-            raise NotConverged(
-                f"mu depends on {name} at no measured load, near {value:.4g}: the data do not determine it, "
-                "or the scene's value is a bad first guess"
-            )
+            said = f"mu depends on {name} at no measured load, near {math.exp(theta[j]):.4g}"
+            why = "the data do not determine it, or the scene's value is a bad first guess"
+            raise NotConverged(f"{said}: {why}")
 
 
 def data_covariance(rows: Sequence[Row], responses: Sequence[Response], between: Array) -> Array:
@@ -148,11 +143,7 @@ def linear_fit(
 
 
 def _linear_fit(
-    rows: Sequence[Row],
-    responses: Sequence[Response],
-    between: Array,
-    scattered: Scatter,
-    kept: NDArray[np.intp],
+    rows: Sequence[Row], responses: Sequence[Response], between: Array, scattered: Scatter, kept: Indices
 ) -> Fit:
     """Fit to the rows with the indices ``kept``."""
     measured = np.array([row.mu for row in rows])
@@ -218,19 +209,15 @@ def shares(rows: Sequence[Row], fitted: Fit, inputs: Sequence[Mapping[str, float
     if math.isfinite(fitted.scatter.degrees):
         found[REALISATIONS] = fitted.scatter.variance(fitted.gain, fitted.theta)
     scale = np.max(np.abs(fitted.gain), axis=1)
-    found["measurement"] = found["measurement"] + 1e-12 * np.diag(scale**2) * np.mean(
-        [row.u_mu**2 for row in rows]
-    )
+    mean = np.mean([row.u_mu**2 for row in rows])
+    found["measurement"] = found["measurement"] + 1e-12 * np.diag(scale**2) * mean
     return found
 
 
-def profile_of(fitted: Fit, parts: Mapping[str, Array]) -> Profile | VaryingProfile:
+def profile_of(fitted: Fit, parts: Mapping[str, Array]) -> Likelihood:
     """Return the likelihood of a fit with the whole covariance, of which realisations give a part."""
     fixed = np.asarray(sum(part for name, part in parts.items() if name != REALISATIONS))
     if REALISATIONS not in parts:
         return Profile(fitted.free, fixed)
-
-    def estimated(theta: Array) -> Array:
-        return fitted.scatter.variance(fitted.gain, theta)
-
+    estimated = partial(fitted.scatter.variance, fitted.gain)
     return VaryingProfile(fitted.free, fixed, estimated, fitted.scatter.degrees, fitted.theta)

@@ -11,9 +11,9 @@ import numpy as np
 
 from refimpl.accuracy.discretisation_error import EXCESS_SPREAD
 from refimpl.driver.solve import solve
-from refimpl.errors import NotConverged
+from refimpl.errors import InputError, NotConverged
 from refimpl.grid import Array
-from refimpl.scene.parameters import parameters, with_parameter
+from refimpl.scene.parameters import BODIES, parameters, with_parameter
 from refimpl.scene.scene import Scene
 from refimpl.sensitivities.difference_quotients import difference_quotients
 from refimpl.sensitivities.sensitivity import friction_slopes, grid_sensitivity
@@ -25,6 +25,9 @@ NAMES = ("friction.tau", "friction.beta")
 _FLOOR = 1e-4  # share of the friction below which a parameter is not solved for: slopes extrapolate to zero
 _QUANTILES = 64  # pressures that stand for a contact in other laws: mu to 1e-3
 _DIFFERENCE_SOLVES = 2  # solves that a derivative by the load, a hardness or a number of a surface takes
+Memory = MutableMapping[str, Mapping[str, Any]]
+Key = Callable[[Scene, Any], str]
+_ROUGHNESS = (".rms", ".rms_gradient")
 
 
 @dataclass(frozen=True)
@@ -64,14 +67,11 @@ class Response:
         return self.mu + float(np.dot(self.slopes, np.subtract(theta, self.at)))
 
 
-Memory = MutableMapping[str, Mapping[str, Any]]
-Key = Callable[[Scene, Any], str]
-
-
 class Forward:
     """Responses of scenes on one grid; ``memory`` keeps them by ``key``, for a fit that goes on later.
 
-    ``further`` names parameters that are fitted beside tau and beta, by their logarithms.
+    ``further`` names parameters that are fitted beside tau and beta, by their logarithms; ``realisations`` is
+    the number of draws of random surfaces.
     """
 
     def __init__(
@@ -81,8 +81,9 @@ class Forward:
         key: Key | None = None,
         report: Callable[[str], None] | None = None,
         further: Sequence[str] = (),
+        realisations: int = 1,
     ) -> None:
-        self.grid, self.solves, self.further = grid, 0, tuple(further)
+        self.grid, self.solves, self.further, self.realisations = grid, 0, tuple(further), realisations
         self._memory, self._key, self._report = memory, key, report
 
     def respond(self, scene: Scene, theta: Array, tolerances: Mapping[str, float] | None = None) -> Response:
@@ -97,13 +98,11 @@ class Forward:
         at = (*map(float, friction), *map(float, theta[len(NAMES) :]))
         tolerances = dict(tolerances or {})
         settings = {"grid": self.grid, "tolerances": tolerances, "further": self.further}
-        if self._memory is None or self._key is None:
-            found = _response(scene, self.grid, at, tolerances, self.further)
-        else:
-            key = self._key(scene, settings)
-            if (stored := self._memory.get(key)) is not None:
-                return response_from_dict(stored)
-            found = _response(scene, self.grid, at, tolerances, self.further)
+        key = None if self._memory is None or self._key is None else self._key(scene, settings)
+        if self._memory is not None and key is not None and (stored := self._memory.get(key)) is not None:
+            return response_from_dict(stored)
+        found = _response(scene, self.grid, at, tolerances, self.further)
+        if self._memory is not None and key is not None:
             self._memory[key] = asdict(found)
         self.solves += found.solves
         return found
@@ -191,3 +190,39 @@ def _condensed(solution: Solution, load: float) -> tuple[tuple[float, ...], tupl
     weights = tuple(float(along[group].sum()) for group in groups)
     means = tuple(float(np.average(pressure[group], weights=along[group])) for group in groups)
     return means, weights
+
+
+def further_parameters(scene: Scene, names: Sequence[str]) -> tuple[str, ...]:
+    """Return the parameters' whole names; `InputError` for none, for two parameters, for repetition.
+
+    The height of a random roughness is none of them. Friction hardly determines it where the surface is known
+    by its statistics: on twins of rough balls its 95 % interval spans a factor of about 3 either way, over
+    which mu is not linear, and intervals of tau that rest on it are too short. A measured height with its
+    tolerance is an input (`identify(..., tolerances=...)`).
+    """
+    if isinstance(names, str):
+        raise InputError("fit", names, "a list of names")
+    found = tuple(_whole(scene, name) for name in names)
+    if len(set(found)) < len(found):
+        raise InputError("fit", ", ".join(found), "each parameter once")
+    return found
+
+
+def _whole(scene: Scene, name: str) -> str:
+    softest = scene.materials.softer_hardness
+    hardnesses = [
+        f"{body}.material.hardness"
+        for body in BODIES
+        if softest is not None and getattr(scene, body).material.hardness == softest
+    ]
+    if name == "roughness" or name.endswith(_ROUGHNESS):
+        raise InputError(
+            "fit", name, "no height of a roughness, which friction hardly determines; give it in [tolerances]"
+        )
+    if name != "hardness" and name not in hardnesses:
+        raise InputError("fit", name, f"one of {', '.join(['hardness', *hardnesses])}")
+    if not hardnesses:
+        raise InputError("fit", name, "a scene with a hardness: its value is the first guess")
+    if len(hardnesses) > 1:
+        raise InputError("fit", name, "two hardnesses that differ, or one: the smaller of them is fitted")
+    return hardnesses[0]

@@ -15,13 +15,18 @@ from refimpl.identification.data_table import Row, check_rows
 from refimpl.identification.design import Proposal, propose, trial_responses
 from refimpl.identification.ensemble import MIN_REALISATIONS, draws, is_random, mean_response
 from refimpl.identification.fit import Fit, fit_rows, profile_of, shares
-from refimpl.identification.forward import NAMES, Forward, Key, Memory, Response, least_parameters
-from refimpl.identification.further import further_parameters
+from refimpl.identification.forward import (
+    NAMES,
+    Forward,
+    Key,
+    Memory,
+    Response,
+    further_parameters,
+    least_parameters,
+)
 from refimpl.identification.laws import compare
-from refimpl.identification.notes import notes
-from refimpl.identification.profile import Profile, quantile
-from refimpl.identification.result import WIDE, Identification, Interval, Prediction
-from refimpl.identification.varying_profile import VaryingProfile
+from refimpl.identification.profile import Likelihood, quantile
+from refimpl.identification.result import WIDE, Identification, Interval, Prediction, notes
 from refimpl.model.friction import Friction
 from refimpl.scene.parameters import check_tolerances, parameters
 from refimpl.scene.scene import Scene
@@ -74,15 +79,16 @@ def identify(
     rows, tolerances = check_rows(rows), dict(tolerances or {})
     further = _check(scene, loads, tolerances, realisations, fit)
     check_rows(rows, len(NAMES) + len(further))
-    forward = Forward(grid, memory, key, report, further)
-    fitted, parts = _fitted(scene, rows, forward, realisations, tolerances)
+    forward = Forward(grid, memory, key, report, further, int(realisations))
+    fitted, parts = _fitted(scene, rows, forward, tolerances)
     profile = profile_of(fitted, parts)
     result = _result(rows, fitted, parts, profile, further)
-    result = replace(
-        result, predictions=_predictions(scene, rows, loads, forward, result, profile, realisations)
-    )
+    new = [mean_response(draws(forward, replace(scene, load=load), fitted.theta)) for load in loads]
+    responses, at = (*fitted.responses, *new), (*(row.load for row in rows), *loads)
+    predictions = (_prediction(P, one, fitted.theta, profile) for P, one in zip(at, responses, strict=True))
+    result = replace(result, predictions=tuple(predictions))
     if design and result.values["tau"].relative > WIDE:
-        result = replace(result, proposal=_proposal(scene, forward, result, parts, realisations))
+        result = replace(result, proposal=_proposal(scene, forward, result, parts))
     result = replace(result, solves=forward.solves)
     drawn = (_ONE_DRAW,) if is_random(scene) and realisations == 1 else ()
     return replace(result, warnings=(*notes(result), *drawn))
@@ -92,7 +98,7 @@ def _result(
     rows: tuple[Row, ...],
     fitted: Fit,
     parts: Mapping[str, Array],
-    profile: Profile | VaryingProfile,
+    profile: Likelihood,
     further: Sequence[str],
 ) -> Identification:
     covariance = np.asarray(sum(parts.values()))
@@ -104,7 +110,7 @@ def _result(
         rows=rows,
         values=values,
         covariance=covariance * np.outer(units, units),
-        shares={name: _standard(part, units) for name, part in parts.items()},
+        shares={name: tuple(map(float, np.sqrt(np.diag(part)) * units)) for name, part in parts.items()},
         method="profile likelihood" if profile.is_bounded else "ellipse",
         factor=factor,
         combination=Interval(float(gradient @ fitted.theta), *profile.interval(gradient)),
@@ -119,36 +125,18 @@ def _result(
     )
 
 
-def _predictions(
-    scene: Scene,
-    rows: Sequence[Row],
-    loads: Sequence[float],
-    forward: Forward,
-    result: Identification,
-    profile: Profile | VaryingProfile,
-    realisations: int,
-) -> tuple[Prediction, ...]:
-    """Return predictions at the loads of all rows, solved by the fit, and at further ones (N)."""
-    theta = result.fitted.theta
-    new = [mean_response(draws(forward, replace(scene, load=load), theta, realisations)) for load in loads]
-    responses, at = (*result.fitted.responses, *new), (*(row.load for row in rows), *loads)
-    return tuple(
-        _prediction(load, response, theta, profile) for load, response in zip(at, responses, strict=True)
-    )
-
-
 def _fitted(
-    scene: Scene, rows: Sequence[Row], forward: Forward, realisations: int, tolerances: Mapping[str, float]
+    scene: Scene, rows: Sequence[Row], forward: Forward, tolerances: Mapping[str, float]
 ) -> tuple[Fit, dict[str, Array]]:
     logarithms = [math.log(parameters(scene)[name]) for name in forward.further]
     start, scenes = np.concatenate([_start(scene, rows), logarithms]), [row.of(scene) for row in rows]
     try:
-        fitted = fit_rows(rows, scenes, forward, start, realisations)
+        fitted = fit_rows(rows, scenes, forward, start)
     except InputError as refused:
         raise _of_row(refused, rows) from refused
     inputs = []
     if tolerances:
-        toleranced = (draws(forward, one, fitted.theta, realisations, tolerances) for one in scenes)
+        toleranced = (draws(forward, one, fitted.theta, tolerances) for one in scenes)
         inputs = [mean_response(drawn).inputs for drawn in toleranced]
     return fitted, shares(rows, fitted, inputs)
 
@@ -162,15 +150,15 @@ def _of_row(refused: InputError, rows: Sequence[Row]) -> InputError:
 
 
 def _proposal(
-    scene: Scene, forward: Forward, result: Identification, parts: Mapping[str, Array], realisations: int
+    scene: Scene, forward: Forward, result: Identification, parts: Mapping[str, Array]
 ) -> Proposal | None:
     rows, theta = result.rows, result.fitted.theta
-    trials = trial_responses(scene, rows, forward, theta, realisations)
+    trials = trial_responses(scene, rows, forward, theta)
     relative = float(np.median([row.u_mu / max(row.mu, row.u_mu) for row in rows]))
     return propose(theta, np.asarray(sum(parts.values())), trials, relative)
 
 
-def _values(fitted: Fit, profile: Profile | VaryingProfile, further: Sequence[str]) -> dict[str, Interval]:
+def _values(fitted: Fit, profile: Likelihood, further: Sequence[str]) -> dict[str, Interval]:
     found = {}
     for j, name in enumerate(("tau", "beta", *further)):
         ends = float(fitted.theta[j]), *profile.interval(np.eye(len(fitted.theta))[j])
@@ -181,10 +169,6 @@ def _values(fitted: Fit, profile: Profile | VaryingProfile, further: Sequence[st
 def _power(logarithm: float) -> float:
     """Return ``exp``, infinite where an interval is too wide for floating point."""
     return math.exp(logarithm) if logarithm < _LARGEST else math.inf
-
-
-def _standard(part: Array, units: Array) -> tuple[float, ...]:
-    return tuple(map(float, np.sqrt(np.diag(part)) * units))
 
 
 def _check(
@@ -234,9 +218,7 @@ def _best_factor(covariance: Array, mean: Array) -> float:
     return best if best > 0 else float(mean[0] / mean[1])
 
 
-def _prediction(
-    load: float, response: Response, theta: Array, profile: Profile | VaryingProfile
-) -> Prediction:
+def _prediction(load: float, response: Response, theta: Array, profile: Likelihood) -> Prediction:
     """Return the interval of mu: parameters by their likelihood, bars and scatter added in squares."""
     mu = response.predict(theta)
     slopes = np.array(response.slopes)
@@ -244,6 +226,5 @@ def _prediction(
     middle = float(slopes @ theta)
     low, high = profile.interval(slopes)
     bar = math.hypot(response.numerical, response.contact_edge, quantile(profile.degrees) * response.scatter)
-    return Prediction(
-        load, Interval(mu, mu - math.hypot(middle - low, bar), mu + math.hypot(high - middle, bar))
-    )
+    below, above = math.hypot(middle - low, bar), math.hypot(high - middle, bar)
+    return Prediction(load, Interval(mu, mu - below, mu + above))

@@ -80,7 +80,8 @@ class Profile:
         self.scale = np.sqrt(np.diag(covariance))
         self.centre = centre / self.scale
         self.precision = np.linalg.inv(covariance / np.outer(self.scale, self.scale))
-        self.optimum = self._optimum()
+        inside = [theta for _, theta, _ in self._faces() if np.all(theta[:BOUNDED] >= 0)]
+        self.optimum: Array = min(inside, key=self._misfit) * self.scale  # inside the bounds, or on a face
         self.least = self._misfit(self.optimum / self.scale)
 
     def _misfit(self, theta: Array) -> float:
@@ -99,11 +100,6 @@ class Profile:
                 pull = self.precision[np.ix_(free, at_zero)] @ self.centre[at_zero]
                 theta[free] = self.centre[free] + covariance @ pull
                 yield free, theta, covariance
-
-    def _optimum(self) -> Array:
-        """Return the optimum within the bounds: inside, or on one of their faces."""
-        inside = [theta for _, theta, _ in self._faces() if np.all(theta[:BOUNDED] >= 0)]
-        return np.asarray(min(inside, key=self._misfit) * self.scale)
 
     def on_line(self, gradient: Array, value: float) -> float:
         """Return the least misfit on ``gradient theta = value`` within the bounds; infinite outside them."""
@@ -141,7 +137,49 @@ class Profile:
     @property
     def is_bounded(self) -> bool:
         """True where the bounds cut the 95 % intervals of the ellipse."""
-        return any(self.centre[j] < self.quantile(axis) for j, axis in enumerate(self._axes()))
+        return any(
+            self.centre[j] < self.quantile(axis) for j, axis in enumerate(np.eye(len(self.centre))[:BOUNDED])
+        )
 
-    def _axes(self) -> Array:
-        return np.eye(len(self.centre))[:BOUNDED]
+
+class VaryingProfile:
+    """Likelihood of parameters about ``centre`` with the covariance ``fixed + estimated(theta)``.
+
+    ``estimated`` has ``degrees`` degrees of freedom; ``theta`` is the fit, within the bounds. Realisations
+    scatter in proportion to ``tau``, which multiplies their areas: where tau is too low by chance, so is the
+    scatter at the fit, and its interval ends below the truth. So each value is judged by its own scatter.
+    A value whose scatter grows as fast as its distance from the fit is never outside: that end is infinite.
+    """
+
+    def __init__(
+        self, centre: Array, fixed: Array, estimated: Callable[[Array], Array], degrees: float, theta: Array
+    ) -> None:
+        self.centre, self.fixed, self.estimated, self.degrees = centre, fixed, estimated, degrees
+        self.base = self._at(theta)
+
+    def _at(self, theta: Array) -> Profile:
+        estimated = self.estimated(theta)
+        return Profile(self.centre, self.fixed + estimated, estimated, self.degrees)
+
+    def interval(self, gradient: Array) -> tuple[float, float]:
+        """Return the 95 % interval of ``gradient theta``, as `Profile.interval` does."""
+        middle, spread = float(gradient @ self.base.optimum), math.sqrt(self._variance(gradient))
+        return interval_ends(lambda value: self.excess(gradient, value), middle, spread, floor(gradient))
+
+    def excess(self, gradient: Array, value: float) -> float:
+        """Return how far ``gradient theta = value`` is outside the 95 % interval; negative inside."""
+        step = (value - float(gradient @ self.base.optimum)) / self._variance(gradient)
+        theta = self.base.optimum + step * (self.base.covariance @ gradient)
+        theta[:BOUNDED] = np.maximum(theta[:BOUNDED], 0.0)
+        return self._at(theta).excess(gradient, value)
+
+    def _variance(self, gradient: Array) -> float:
+        return float(gradient @ self.base.covariance @ gradient)
+
+    @property
+    def is_bounded(self) -> bool:
+        """True where the bounds cut the 95 % intervals of the ellipse at the fit."""
+        return self.base.is_bounded
+
+
+Likelihood = Profile | VaryingProfile

@@ -14,7 +14,6 @@ that 1e-12 and 1e12 are as good as 1.
 
 from __future__ import annotations
 
-from refimpl.kernels.points import normal_integral, tangential_integral
-from refimpl.kernels.tables import normal_table, tangential_table
+from refimpl.kernels.integrals import normal_integral, normal_table, tangential_integral, tangential_table
 
 __all__ = ["normal_integral", "normal_table", "tangential_integral", "tangential_table"]

@@ -51,8 +51,7 @@ def weighted_edge(centre: Array, t: Array, length: float) -> Array:
     near_sum = np.where(near_end < 0, distance * (distance / near_reach), near_reach)
     # Below the floor t < 1e-150 length, where t log(length / t) adds nothing to the other edges.
     excess = np.maximum(near_sum + distance * (distance / far_reach), _TINY)
-    weighted: Array = t * np.log1p(2 * length / excess)
-    return weighted
+    return np.asarray(t * np.log1p(2 * length / excess))
 
 
 def closed_form(x: Array, y: Array, dx: float, dy: float) -> Array:

@@ -23,10 +23,10 @@ from refimpl.measured.areal_parameters import (
 )
 from refimpl.measured.measured_surface import MeasuredSurface
 from refimpl.measured.missing_points import fill
+from refimpl.measured.preparation import standing_out
 from refimpl.measured.reading import PLAIN
 from refimpl.measured.roughness_fit import RoughnessFit, fit_roughness
 from refimpl.measured.spectrum import NORMALISATION, Spectrum, fill_error, texture_direction
-from refimpl.measured.standing_out import standing_out
 from refimpl.surfaces.surface import pixel_edges
 
 SAL_LEVEL = 0.2  # ISO 25178-2

@@ -24,7 +24,6 @@ from refimpl.measured.channels import (
     topography,
     with_coordinates,
 )
-from refimpl.measured.file_kinds import kind_of
 from refimpl.measured.point_tables import points_map
 from refimpl.measured.reading import (
     ALONG_Y,
@@ -35,6 +34,7 @@ from refimpl.measured.reading import (
     RawHeights,
     checked,
     first_line,
+    kind_of,
     unreadable,
 )
 from refimpl.measured.text_lines import WYKO

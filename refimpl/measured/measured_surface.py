@@ -12,15 +12,21 @@ import numpy as np
 
 from refimpl.errors import InputError, require_number, require_one_of, require_size, size_text
 from refimpl.grid import Array, Grid
-from refimpl.measured.crop import ROUNDING, Crop, extent
+from refimpl.measured.crop import (
+    ROUNDING,
+    Crop,
+    Oriented,
+    check_orientation,
+    checked_centre,
+    extent,
+    oriented,
+)
 from refimpl.measured.detrending import Form, check_level, fit_form
 from refimpl.measured.missing_points import fill
-from refimpl.measured.orientation import Oriented, check_orientation, checked_centre, oriented
-from refimpl.measured.preparation import check_preparation, prepare
+from refimpl.measured.preparation import check_preparation, prepare, standing_out
+from refimpl.measured.reader_process import read_untrusted, refuse_huge
 from refimpl.measured.readers import UNITS, RawHeights, read
-from refimpl.measured.standing_out import standing_out
-from refimpl.measured.untrusted import read_untrusted, refuse_huge
-from refimpl.surfaces.bicubic import MEMORY, resample, resample_periodic
+from refimpl.surfaces.arrays import MEMORY, resample, resample_periodic
 from refimpl.surfaces.from_table import KINDS
 from refimpl.surfaces.surface import Surface, pixel_edges
 
@@ -250,10 +256,11 @@ class MeasuredSurface(Surface):
     def describe(self, grid: Grid) -> tuple[str, ...]:
         name, window = self._file.name, self._crop(grid.lengths)
         reading = window.reading
+        about = "its middle" if self.centre is None else f"({self.centre[0]:g}, {self.centre[1]:g}) m"
         return (
             f"{name}: {size_text(reading.heights.shape)} points on {size_text(reading.area)} m, "
             f"read {reading.source}",
-            f"{name}: the window of {size_text(grid.lengths)} m about {self._about} is used, "
+            f"{name}: the window of {size_text(grid.lengths)} m about {about} is used, "
             f"{size_text(part.stop - part.start for part in window.points)} points, resampled bicubically to "
             f"{grid} elements",
             f"{name}: {reading.orientation}",
@@ -264,10 +271,6 @@ class MeasuredSurface(Surface):
     def file_notes(self) -> tuple[str, ...]:
         """Channel, orientation and what was changed in reading and preparing the file."""
         return (self.reading.orientation, *self.prepared.notes)
-
-    @property
-    def _about(self) -> str:
-        return "its middle" if self.centre is None else f"({self.centre[0]:g}, {self.centre[1]:g}) m"
 
     def pitch(self, lengths: tuple[float, float]) -> float:
         return min(self._oriented.reading.pixel)

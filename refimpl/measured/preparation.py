@@ -1,4 +1,4 @@
-"""Preparation of a measured map as a whole, before a window is cut: outliers, scan lines, filters."""
+"""Preparation of a measured map as a whole, before a window is cut: outliers, lines, filters, scars."""
 
 from __future__ import annotations
 
@@ -22,6 +22,8 @@ PERCENTILE_TO_RMS = 1.2816  # factor from the 80th percentile of absolute Gaussi
 MAD_TO_RMS = 1.4826  # from the median of absolute Gaussian distances to their rms
 _ROUNDING = 1e-9  # share of the rms height
 REACH = 1.5  # cut-off wavelengths of padding: the weight there is exp(-1.5^2 pi^2 / ln 2) = 1e-14
+FAR = 8.0  # spreads: of Gaussian distances one in 10^15 is farther
+_LEAST_LINES = 16  # lines from which their steps have a spread
 
 
 def check_preparation(
@@ -136,18 +138,12 @@ def _filtered(
             raise InputError(name, wavelength, f"at least two pixels of {reading.name}, each {own}")
         smooth = gaussian_filter(z, reading.pixel, wavelength, repeats)
         z = smooth if name == "low_pass" else z - smooth
-        border = (
-            ""
-            if repeats
-            else (
-                f"; within half of it, {wavelength / 2:.4g} m, of the border heights are biased: "
-                "a smaller size leaves that zone out"
-            )
-        )
-        notes.append(
-            f"wavelengths {'below' if name == 'low_pass' else 'above'} {wavelength:.4g} m were damped "
-            f"(Gaussian filter of ISO 16610, by half at that wavelength){border}"
-        )
+        said = f"wavelengths {'below' if name == 'low_pass' else 'above'} {wavelength:.4g} m were damped "
+        said += "(Gaussian filter of ISO 16610, by half at that wavelength)"
+        if not repeats:
+            said += f"; within half of it, {wavelength / 2:.4g} m, of the border heights are biased: "
+            said += "a smaller size leaves that zone out"
+        notes.append(said)
     z = z if high_pass is not None else z + plane
     return replace(reading, heights=np.where(np.isnan(reading.heights), np.nan, z), notes=tuple(notes))
 
@@ -179,3 +175,34 @@ def _filled(reading: RawHeights) -> Array:
     if np.isnan(reading.heights).all():
         raise InputError("missing", f"all points of {reading.name}", "a measured point at least")
     return fill(reading.heights, reading.pixel)
+
+
+def standing_out(z: Array, known: Mask) -> tuple[str, ...]:
+    """Return notes on ``known`` points and on lines along each axis that stand out; empty for none."""
+    if not known.any():
+        return ()
+    points, notes = int(np.count_nonzero(outlying(z, known, FAR)[0])), []
+    if points:
+        notes.append(
+            f"{points} points stand out by more than {FAR:g} local spreads: outliers = {FAR:g} (--outliers "
+            f"{FAR:g}) removes them"
+        )
+    for axis, values in (("x", z.T), ("y", z)):
+        if lines := scars(values):
+            notes.append(
+                f"{lines} of {len(values)} lines along {axis} stand out as a whole (scars of a scan): "
+                f'scan_lines = "{axis}" (--scan-lines {axis}) levels each; contact would run along them'
+            )
+    return tuple(notes)
+
+
+def scars(z: Array) -> int:
+    """Return how many rows lie above, or below, both neighbours by `FAR` spreads of median steps."""
+    if len(z) < _LEAST_LINES:
+        return 0
+    steps = np.median(np.diff(z, axis=0), axis=1)
+    steps = steps - np.median(steps)
+    spread = max(MAD_TO_RMS * float(np.median(np.abs(steps))), _ROUNDING * float(z.std()))
+    up, down = steps[:-1], -steps[1:]
+    out = (up * down > 0) & (np.minimum(np.abs(up), np.abs(down)) > FAR * spread)
+    return int(np.count_nonzero(out))

@@ -16,7 +16,6 @@ import numpy as np
 
 from refimpl.errors import InputError, size_text
 from refimpl.grid import Array
-from refimpl.measured.file_kinds import kind_of
 from refimpl.measured.instrument_files import claimed_by_magic, library_for, read_as, read_instrument
 from refimpl.measured.point_tables import POINT, points_map
 from refimpl.measured.reading import (
@@ -29,6 +28,7 @@ from refimpl.measured.reading import (
     RawHeights,
     checked,
     far_points,
+    kind_of,
     read_or_refuse,
     unreadable,
 )

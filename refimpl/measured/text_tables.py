@@ -18,10 +18,9 @@ from pathlib import Path
 import numpy as np
 
 from refimpl.grid import Array
-from refimpl.measured.decimal_marks import refuse_ambiguous
 from refimpl.measured.point_tables import POINT
 from refimpl.measured.reading import unreadable
-from refimpl.measured.table_labels import is_title, without_labels, word_in_corner
+from refimpl.measured.table_labels import is_title, refuse_ambiguous, without_labels, word_in_corner
 from refimpl.measured.text_lines import NOT_MEASURED, encoding_of, in_english, lines_of
 
 MAX_HEADER = 400  # lines before the numbers

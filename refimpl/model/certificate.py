@@ -227,7 +227,8 @@ def certify(
     f, r, on_slopes = pressure[box.slices], traction[box.slices], found.windowed(box)
     lowest = float(np.min(v, where=pressure < cap, initial=np.inf))
     contact: Mask = f > 0
-    pressed, shares = float(f.sum()) > 0, _shares(f)
+    total = float(f.sum())
+    pressed, shares = total > 0, f / total if total > 0 else f  # products of small pressures underflow
     mean_v = approach_from(pressure, v, cap)
     approach = mean_v if problem.approach is None else problem.approach
     forces = resultants(f, r, on_slopes, problem.grid.element_area)
@@ -283,12 +284,6 @@ def certify(
         status=status,
         iterations=iterations or {},
     )
-
-
-def _shares(f: Array) -> Array:
-    """Return pressures over their sum, as products of small ones underflow; 0 without contact."""
-    total = float(f.sum())
-    return f / total if total > 0 else f
 
 
 def _capped_gap(f: Array, v: Array, cap: float, approach: float) -> float:

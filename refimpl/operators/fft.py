@@ -43,29 +43,26 @@ class Counter:
 class Convolution(ABC):
     """Influence convolutions by products with the kernels' transforms: one transform, counted, for each.
 
-    Subclasses have the transforms of the kernels, along the sliding direction and across it, and the product.
+    Its methods are those of `refimpl.model.elasticity.WindowOperator`. Subclasses have the transforms of the
+    kernels, along the sliding direction and across it, and the product.
     """
 
     counter: Counter
     _points: int  # points of a transform
 
     def normal(self, pressure: Array) -> Array:
-        """Return ``I[1/rho]`` applied to a pressure."""
         self.counter.add("normal", self._points)
         return self._convolve(pressure, self._normal_hat)
 
     def shear(self, traction: Array) -> Array:
-        """Return ``I[s/rho^2]`` applied to a traction along the sliding direction."""
         self.counter.add("shear", self._points)
         return self._convolve(traction, self._shear_hat)
 
     def shear_across(self, traction: Array) -> Array:
-        """Return ``I[t/rho^2]`` applied to a traction across the sliding direction."""
         self.counter.add("shear", self._points)
         return self._convolve(traction, self._across_hat)
 
     def coupled(self, ratio: float) -> Callable[[Array], Array]:
-        """Return the product ``I[1/rho] + ratio I[s/rho^2]`` of a pressure: both kernels in one."""
         hat = self._normal_hat + ratio * self._shear_hat
 
         def product(pressure: Array) -> Array:

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refimpl.grid import Array, Mask
-from refimpl.operators.block_means import BlockMeans
+from refimpl.operators.coarse_grid import BlockMeans
 from refimpl.operators.influence import WindowInfluence
 from refimpl.operators.transforms import fourier, threads
 
@@ -64,8 +64,7 @@ class SpectralPreconditioner:
         spectrum *= self._symbol
         n, m = residual.shape
         found = fourier.plane_back(spectrum, self._circle, workers)[:n, :m]
-        scaled_back: Array = np.multiply(found, largest * self._stiffest, dtype=np.float64)
-        return scaled_back
+        return np.asarray(np.multiply(found, largest * self._stiffest, dtype=np.float64))
 
 
 class _Neighbours(NamedTuple):

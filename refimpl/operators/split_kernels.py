@@ -44,8 +44,7 @@ def far_quarter(kind: str, shape: Shape) -> Array:
     """Return the far part between points of the coarse grid, with a window undone at either end."""
     x, y = (COARSER * np.arange(float(n + _TAPS)) for n in shape)
     along, across = (_filter(n, sign) for n, sign in zip(shape, _SIGNS[kind], strict=True))
-    quarter: Array = along @ _far(kind, x[:, None], y) @ across.T
-    return quarter
+    return np.asarray(along @ _far(kind, x[:, None], y) @ across.T)
 
 
 @cache

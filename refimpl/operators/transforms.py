@@ -39,30 +39,25 @@ class SciPy:
     def rows(self, spectrum: Complex, workers: int, *, forward: bool) -> Complex:
         """Transform along each row, best in place."""
         transform = scipy.fft.fft if forward else scipy.fft.ifft
-        found: Complex = transform(spectrum, axis=1, overwrite_x=True, workers=workers)
-        return found
+        return np.asarray(transform(spectrum, axis=1, overwrite_x=True, workers=workers))
 
     def columns_back(self, spectrum: Complex, length: int, workers: int) -> Array:
         """Transform backward into real columns of that length."""
-        found: Array = scipy.fft.irfft(spectrum, n=length, axis=0, workers=workers)
-        return found
+        return np.asarray(scipy.fft.irfft(spectrum, n=length, axis=0, workers=workers))
 
     def plane(self, values: Array, shape: tuple[int, ...], workers: int) -> Complex:
         """Transform forward along both axes of real ``values``, padded with zeros to the shape."""
-        found: Complex = scipy.fft.rfft2(values, s=shape[::-1], axes=(1, 0), workers=workers)
-        return found
+        return np.asarray(scipy.fft.rfft2(values, s=shape[::-1], axes=(1, 0), workers=workers))
 
     def plane_back(self, spectrum: Complex, shape: tuple[int, ...], workers: int) -> Array:
         """Transform backward into real values of the shape; the spectrum may be overwritten."""
-        found: Array = scipy.fft.irfft2(
-            spectrum, s=shape[::-1], axes=(1, 0), overwrite_x=True, workers=workers
+        return np.asarray(
+            scipy.fft.irfft2(spectrum, s=shape[::-1], axes=(1, 0), overwrite_x=True, workers=workers)
         )
-        return found
 
     def even_plane(self, quarter: Array, workers: int) -> Array:
         """Return an even field's transform, by quarters with both ends; that given may be overwritten."""
-        found: Array = scipy.fft.dctn(quarter, type=1, overwrite_x=True, workers=workers)
-        return found
+        return np.asarray(scipy.fft.dctn(quarter, type=1, overwrite_x=True, workers=workers))
 
     def odd_plane(self, quarter: Array, workers: int) -> Array:
         """Return ``i`` times that of a field odd along the first axis, both ends taken to be zero."""
@@ -92,10 +87,9 @@ class Ducc:
         return spectrum
 
     def columns_back(self, spectrum: Complex, length: int, workers: int) -> Array:
-        found: Array = self._fft.c2r(
-            spectrum, axes=(0,), lastsize=length, forward=False, inorm=2, nthreads=workers
+        return np.asarray(
+            self._fft.c2r(spectrum, axes=(0,), lastsize=length, forward=False, inorm=2, nthreads=workers)
         )
-        return found
 
     def plane(self, values: Array, shape: tuple[int, ...], workers: int) -> Complex:
         if values.shape != shape:
@@ -103,20 +97,20 @@ class Ducc:
             padded = np.zeros(shape, dtype=values.dtype)
             padded[:n, :m] = values
             values = padded
-        found: Complex = self._fft.r2c(values, axes=(1, 0), nthreads=workers)
-        return found
+        return np.asarray(self._fft.r2c(values, axes=(1, 0), nthreads=workers))
 
     def plane_back(self, spectrum: Complex, shape: tuple[int, ...], workers: int) -> Array:
-        found: Array = self._fft.c2r(
-            spectrum,
-            axes=(1, 0),
-            lastsize=shape[0],
-            forward=False,
-            inorm=2,
-            nthreads=workers,
-            allow_overwriting_input=True,
+        return np.asarray(
+            self._fft.c2r(
+                spectrum,
+                axes=(1, 0),
+                lastsize=shape[0],
+                forward=False,
+                inorm=2,
+                nthreads=workers,
+                allow_overwriting_input=True,
+            )
         )
-        return found
 
     def even_plane(self, quarter: Array, workers: int) -> Array:
         self._fft.dct(quarter, type=1, axes=(0, 1), out=quarter, nthreads=workers)

@@ -94,7 +94,9 @@ def expected_contact(problem: Problem) -> ExpectedContact:
     approach = problem.approach or 2 * level
     near = gap < 2 * approach
     window = Window.around(near, margin=1).shape if near.any() else (0, 0)
-    symmetric, mirrored = _symmetries(coarse, problem)
+    seen_heights = [z for p in (coarse, problem) for z in (p.gap, p.mean_surface)]
+    symmetric = all(_is_image(z, z[::-1, ::-1]) for z in seen_heights)  # after half a turn
+    mirrored = _mirrored(problem.direction, seen_heights)
     weights, clearance = np.ones(elements), np.maximum(gap - level, 0.0)
     seen = _described(coarse, contact, weights, clearance, mean_pressure, _PEAKED * mean_pressure)
     finer = [n / m for n, m in zip(problem.grid.shape, coarse.grid.shape, strict=True)]
@@ -123,8 +125,7 @@ def _bearing(problem: Problem, stiffness: float, load: float) -> Mask:
 def _first(order: NDArray[np.intp], count: int, gap: Array) -> Mask:
     """Return the first ``count`` elements of an order, and those as low as the last of them."""
     last = order[min(count, order.size) - 1]
-    chosen: Mask = gap <= gap.flat[last] + _ROUNDING * np.ptp(gap)
-    return chosen
+    return np.asarray(gap <= gap.flat[last] + _ROUNDING * np.ptp(gap))
 
 
 def _rising(gap: Array) -> NDArray[np.intp]:
@@ -133,8 +134,7 @@ def _rising(gap: Array) -> NDArray[np.intp]:
 
 def _gradient_squared(problem: Problem) -> Array:
     slopes = _slopes(problem, problem.gap)
-    squared: Array = slopes.tan_x**2 + slopes.tan_y**2
-    return squared
+    return np.asarray(slopes.tan_x**2 + slopes.tan_y**2)
 
 
 def solved_contact(
@@ -160,9 +160,10 @@ def _described(
     tangents = [_on(where, near, z)[0] for z in (lower, upper)]
     common = share * lower + (1 - share) * upper + (share - 0.5) * clearance[window.slices]
     along, across = _on(where, near, common)
+    sizes = patch_sizes(where, periodic=problem.grid.periodic).astype(np.float64)
     return {
         "elements": loads.size,
-        "patches": _patches(where, problem.grid.periodic),
+        "patches": float(sizes.sum() ** 2 / np.sum(sizes**2)),  # equal ones of the same weight
         "mean_pressure": mean_pressure,
         "pressure": pressure,
         "slope_squared": float(np.sum(weights * (along**2 + across**2))),
@@ -179,20 +180,8 @@ def _on(where: Mask, problem: Problem, heights: Array) -> tuple[Array, Array]:
     return slopes.tan_x[where], slopes.tan_y[where]
 
 
-def _symmetries(coarse: Problem, problem: Problem) -> tuple[bool, bool]:
-    """Return whether both surfaces are images after half a turn, and across the sliding line."""
-    seen = [z for p in (coarse, problem) for z in (p.gap, p.mean_surface)]
-    return all(_is_image(z, z[::-1, ::-1]) for z in seen), _mirrored(problem.direction, seen)
-
-
 def _slopes(problem: Problem, heights: Array) -> Slopes:
     return Slopes.of_surface(heights, problem.grid, problem.direction)
-
-
-def _patches(contact: Mask, periodic: bool) -> float:
-    """Return the number of equal patches with the same weight: ``(sum n)^2 / sum n^2``."""
-    sizes = patch_sizes(contact, periodic=periodic).astype(np.float64)
-    return float(sizes.sum() ** 2 / np.sum(sizes**2))
 
 
 def _is_image(z: Array, image: Array) -> bool:

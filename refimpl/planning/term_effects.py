@@ -89,8 +89,7 @@ class Scales:
     @property
     def tilts(self) -> tuple[float, float]:
         """Mean slopes ``<t>`` of both surfaces under shear, each of its own body."""
-        lower, upper = self.pair.tilts(_TILT * shear_at(self.friction, self.contact.pressure))
-        return abs(lower), abs(upper)
+        return self.pair.tilts(_TILT * shear_at(self.friction, self.contact.pressure))
 
     def effect(self, friction: float, area: float, local: float) -> Effect:
         """Return an effect from the changes of mu without tau's, of A, and of single patches' areas."""
@@ -112,7 +111,7 @@ def coupled(scales: Scales) -> Effect:
     area = _EVEN * strength**2
     if not scales.contact.symmetric:
         area += local / math.sqrt(scales.contact.patches)
-    lower, upper = scales.pair.tilts(_TILT * shear_at(scales.friction, scales.contact.pressure))
+    lower, upper = scales.tilts
     return scales.effect(0.5 * abs(lower - upper) + local * scales.contact.least_slope, area, local)
 
 
@@ -120,7 +119,7 @@ def tilted(scales: Scales) -> Effect:
     """Return the effect of neglecting shear's motion of the common surface in its slopes."""
     if scales.frictionless:
         return NONE
-    tilt = 0.5 * sum(scales.tilts)
+    tilt = 0.5 * sum(map(abs, scales.tilts))
     area = scales.mu * tilt
     return scales.effect((1 + scales.mu**2) * tilt, area, area)
 
@@ -130,7 +129,7 @@ def oblique(scales: Scales) -> Effect:
     contact = scales.contact
     if scales.frictionless and contact.symmetric:
         return Effect(0.0, contact.slope_squared)  # equal on all sides: no random change of elements
-    slope = max(scales.tilts) + contact.slope_squared
+    slope = max(map(abs, scales.tilts)) + contact.slope_squared
     if not contact.symmetric:
         slope += _MEAN_SLOPE * contact.least_mean_slope + _UNEVEN * contact.least_slope
         slope += _ONE_SIDED * contact.border * math.sqrt(contact.slope_squared)

@@ -16,7 +16,7 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 from refimpl.errors import InputError
 from refimpl.model.friction import Friction
 from refimpl.model.materials import Material
-from refimpl.scene import key_texts
+from refimpl.scene import scene_file
 from refimpl.scene.scene import Body, Scene
 from refimpl.scene.scene_file import scene_from_dict
 from refimpl.surfaces.from_table import KINDS, surface_from_dict
@@ -71,10 +71,10 @@ def scene_keys() -> dict[str, tuple[Key, ...]]:
     tables = {
         "scene": _scene(),
         "body": _body(),
-        "material": _of(Material, key_texts.MATERIAL, _material),
-        "friction": _of(Friction, key_texts.FRICTION, _friction),
+        "material": _of(Material, scene_file.MATERIAL, _material),
+        "friction": _of(Friction, scene_file.FRICTION, _friction),
     }
-    surfaces = _complete("surface", key_texts.SURFACES, list(KINDS))
+    surfaces = _complete("surface", scene_file.SURFACES, list(KINDS))
     for kind, made in KINDS.items():
         tables[f"surface, {kind}"] = _of(made, surfaces[kind], partial(_surface, kind))
     return tables
@@ -124,7 +124,7 @@ def as_toml(value: object) -> str:
 
 
 def _scene() -> tuple[Key, ...]:
-    texts, hints = key_texts.SCENE, get_type_hints(Scene)
+    texts, hints = scene_file.SCENE, get_type_hints(Scene)
     found = {f.name: f for f in fields(Scene)}
     keys = []
     for name in _complete("scene", texts, [*found, "tolerances"]):
@@ -143,11 +143,11 @@ def _body() -> tuple[Key, ...]:
     kinds = {"material": ("table", REQUIRED), "surface": ("list of tables", "flat")}
     return tuple(
         Key(name, *kinds[name][:1], unit, kinds[name][1], allowed_by(_upper, dict(_METAL), name), meaning)
-        for name, (unit, meaning) in key_texts.BODY.items()
+        for name, (unit, meaning) in scene_file.BODY.items()
     )
 
 
-def _of(made: type, texts: key_texts.Texts, allowed: Callable[[str], str]) -> tuple[Key, ...]:
+def _of(made: type, texts: scene_file.Texts, allowed: Callable[[str], str]) -> tuple[Key, ...]:
     hints = get_type_hints(made)
     found = {f.name: f for f in fields(made) if f.init}
     _complete(made.__name__, texts, list(found))

@@ -1,4 +1,8 @@
-"""Scenes as TOML: reading with every field checked, writing, and the scenes that ship with the package."""
+"""Scenes as TOML: reading with every field checked, writing, and the scenes that ship with the package.
+
+Units and meanings of the keys are data, ``data/scene_keys.toml``. Types, defaults and limits stand in the
+classes; `refimpl.scene.keys.scene_keys` refuses a key that its class does not have, or one that is missing.
+"""
 
 from __future__ import annotations
 
@@ -16,17 +20,30 @@ import tomli_w
 from refimpl.errors import InputError, within
 from refimpl.model.friction import Friction
 from refimpl.model.materials import Material
-from refimpl.scene.key_texts import BODY, FRICTION, MATERIAL, SCENE
 from refimpl.scene.parameters import check_tolerances
 from refimpl.scene.scene import Body, Scene
 from refimpl.surfaces import ArraySurface, SurfaceSum, surface_from_dict
 from refimpl.surfaces.from_table import KINDS
 
+Texts = dict[str, tuple[str, str]]
+"""Unit and meaning by key."""
+
+_TEXTS = tomllib.loads(resources.files("refimpl").joinpath("data", "scene_keys.toml").read_text("utf-8"))
+
+
+def _texts(table: Mapping[str, Any]) -> Texts:
+    return {key: (unit, meaning) for key, (unit, meaning) in table.items()}
+
+
+SCENE, BODY = _texts(_TEXTS["scene"]), _texts(_TEXTS["body"])
+MATERIAL, FRICTION = _texts(_TEXTS["material"]), _texts(_TEXTS["friction"])
+SURFACES = {kind: _texts(table) for kind, table in _TEXTS["surface"].items()}
+"""Texts by a surface's ``kind``."""
+
 _MAX_BYTES = 1_000_000  # a scene is a page of text; anything larger is not a scene
 _MAX_PARTS = 32  # parts of a dotted key: parse time grows with their square
 _PART = r"""(?:[\w-]+|"[^"\n]*"|'[^'\n]*')"""
 _LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*\.[ \t]*{_PART}){{{_MAX_PARTS}}}")
-_SCENE_KEYS = tuple(SCENE)
 _TABLES = ("upper", "lower", "friction", "tolerances")
 _OPTIONAL_KEYS = tuple(key for key in SCENE if key not in ("load", *_TABLES))
 _RIGID = "rigid"  # E of a rigid body

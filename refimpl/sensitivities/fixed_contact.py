@@ -9,12 +9,15 @@ holds the whole model; its Jacobian is applied by a difference quotient and inve
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 import scipy
 
+from refimpl.errors import NotConverged
 from refimpl.grid import Array, Mask
 from refimpl.model.certificate import approach_from
 from refimpl.model.forces import Forces, resultants
@@ -22,12 +25,20 @@ from refimpl.model.problem import Problem
 from refimpl.model.slopes import Slopes
 from refimpl.operators.influence import window_influence
 from refimpl.operators.preconditioner import ExtendedPreconditioner, SpectralPreconditioner
+from refimpl.scene.discretise import discretise
+from refimpl.scene.parameters import with_parameter
+from refimpl.scene.scene import Scene
+from refimpl.sensitivities.difference_quotients import both_sides
 
 _MARGIN = 2  # elements around the contact: its slopes are central differences
 _STEP = 1e-4  # step of the quotient, in peak pressures: the error is slopes^2, that of rounding 1e-12
 _TOLERANCE = 1e-6  # relative residual of GMRES: a thousandth of the accuracy of a derivative
 _RESTART, _CYCLES = 80, 5
 _FACETS = 4  # times: each leaves a hundredth of what slopes still change by (at 5 degrees; see the tests)
+_PARAMETER_STEP = 1e-4  # relative, of parameters: smooth at a fixed set, so the quotient errs by 1e-8
+_TIED = 1e-6  # share of p_max within which pressures tie: symmetric scenes, apart from slopes
+_SOLVED = 1e-3  # relative residual of a linear solve, at most: the digits of a derivative
+_WIDTHS = 5, 9  # elements over which the change at an edge is compared with that inside
 
 
 class LinearResponse(NamedTuple):
@@ -133,3 +144,106 @@ class FixedContact:
             slopes = problem.slopes(lower, upper, yielded)
         forces = resultants(pressure, traction, slopes, problem.grid.element_area)
         return lower + upper, slopes.cosine_product, forces
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """Derivatives at the fixed set: pressures (window's shape), their peak, F, Q and the approach.
+
+    Of peaks that tie the middle one counts, as for a central difference; ``torn`` is how far others are off.
+    """
+
+    pressure: Array
+    peak: float
+    torn: float
+    friction: float
+    binormal: float
+    approach: float
+    residual: float
+
+
+def fixed_answer(
+    scene: Scene, base: Problem, fixed: FixedContact, name: str, value: float, excess: float
+) -> Answer:
+    """Return the answer to a parameter; friction without tau on the mean ``excess`` (m^2)."""
+    (low, below), (high, above) = both_sides(
+        name,
+        value,
+        _PARAMETER_STEP,
+        lambda at: _changed(scene, base, with_parameter(scene, name, at)).windowed(fixed.window),
+    )
+    span = high - low
+    residuals = [fixed.residual(problem, fixed.pressure, fixed.approach) for problem in (below, above)]
+    found = fixed.response((residuals[1] - residuals[0]) / span)
+    if not found.residual <= _SOLVED:
+        raise NotConverged(f"the derivative over {name} is not found: {found.residual:.1e} is left of it")
+    before, after = (
+        fixed.forces(
+            problem,
+            fixed.pressure + (at - value) * found.pressure,
+            fixed.approach + (at - value) * found.approach,
+        )
+        for problem, at in ((below, low), (above, high))
+    )
+    pressure = found.pressure
+    if fixed.capped.any():
+        pressure = np.where(fixed.capped, (above.cap - below.cap) / span, pressure)
+    tied = pressure[fixed.pressure >= (1 - _TIED) * fixed.peak]
+    return Answer(
+        pressure=pressure,
+        peak=0.5 * float(tied.max() + tied.min()),
+        torn=0.5 * float(np.ptp(tied)),
+        friction=(after.friction - before.friction - (above.friction.jump - below.friction.jump) * excess)
+        / span,
+        binormal=(after.binormal - before.binormal) / span,
+        approach=found.approach,
+        residual=found.residual,
+    )
+
+
+def _changed(scene: Scene, base: Problem, changed: Scene) -> Problem:
+    """Return the changed scene's problem; surfaces are sampled again only where they changed."""
+    if changed.upper.surface is scene.upper.surface and changed.lower.surface is scene.lower.surface:
+        elasticity = replace(base.elasticity, pair=changed.materials)
+        return replace(base, elasticity=elasticity, friction=changed.friction, load=changed.load)
+    return discretise(changed, base.grid, base.terms)
+
+
+class EdgeMotion:
+    """Motion of the contact's edge, calibrated by the load: the area's derivative from a pressure's.
+
+    Pressure falls off as ``k sqrt(d)`` at a distance d from an edge, so an edge that moves by V changes it by
+    ``k V / (2 sqrt d)``. The relative change of the outermost elements, ``df / f = V / (2 d)``, beyond that
+    of the elements inside, measures V up to one factor, which a change whose area is known gives.
+    """
+
+    def __init__(self, fixed: FixedContact, over_load: tuple[float, float], loaded: Array) -> None:
+        self.fixed = fixed
+        wrapped = np.pad(fixed.contact, 1, mode=fixed.problem.grid.continuation)
+        self.elements = (wrapped & ~scipy.ndimage.binary_erosion(wrapped, border_value=1))[1:-1, 1:-1]
+        derivative, counted = over_load
+        self.everywhere = np.ones(fixed.contact.shape)
+        self.factors = [
+            derivative / growth if (growth := self._growth(loaded, size)) else 0.0 for size in _WIDTHS
+        ]
+        self.counted = counted / abs(derivative) if derivative else 0.0
+
+    def derivative(self, pressure: Array) -> tuple[float, float]:
+        """Return ``dA/dp`` (m^2 a unit) and its scatter for a derivative of the pressures."""
+        near, far = (
+            factor * self._growth(pressure, size) for factor, size in zip(self.factors, _WIDTHS, strict=True)
+        )
+        return near, math.hypot(self.counted * near, near - far)
+
+    def _growth(self, pressure: Array, size: int) -> float:
+        """Sum the relative change along the edge, less that of all ``size x size`` elements around."""
+        mode = self.fixed.problem.grid.continuation
+
+        def ratio(where: Array, width: int) -> Array:
+            change, level = (
+                scipy.ndimage.uniform_filter(where * field, width, mode=mode)[self.elements]
+                for field in (pressure, self.fixed.pressure)
+            )
+            return np.asarray(change / level)
+
+        return float(np.sum(ratio(self.elements.astype(np.float64), 3) - ratio(self.everywhere, size)))

@@ -6,8 +6,8 @@ linear solve a parameter (`refimpl.sensitivities.fixed_contact`). The area does 
 constant, and on a grid it is a count. It is found in two ways, and ``tau dA`` is added to friction.
 
 - Load, moduli and friction leave the surfaces alone, and the edges of the contact move by what the
-  linear answer grows like there (`refimpl.sensitivities.edge_motion`), up to one factor. That is taken from
-  the load, for which the area is differenced over two full solves.
+  linear answer grows like there (`EdgeMotion`), up to one factor. That is taken from the load, for which the
+  area is differenced over two full solves.
 - Shapes and roughness bring contact to new places, which no fixed set foresees: the area is differenced
   over two full solves for each. So it is for all parameters where pressures reach the hardness: there the
   edge has no such growth.
@@ -37,9 +37,7 @@ from refimpl.sensitivities.difference_quotients import (
     difference_quotients,
     solved_again,
 )
-from refimpl.sensitivities.edge_motion import EdgeMotion
-from refimpl.sensitivities.fixed_answer import Answer, fixed_answer
-from refimpl.sensitivities.fixed_contact import FixedContact
+from refimpl.sensitivities.fixed_contact import Answer, EdgeMotion, FixedContact, fixed_answer
 from refimpl.solution.quantities import error_bound
 from refimpl.solution.solution import Solution
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from refimpl.model.state import Status
@@ -15,47 +17,30 @@ def cause_of_failure(evidence: Evidence) -> str | None:
     """Return the first cause that applies to a solve that did not converge, with its number; else None."""
     if evidence.status in _ENDED_WELL:
         return None
-    causes = (cause(evidence) for cause in (_hardness, _pressure, _coupling, _tilt, _excluded))
-    return next((f"{evidence.status.value}: {cause}" for cause in causes if cause is not None), None)
+    return next((f"{evidence.status.value}: {cause}" for cause in _causes(evidence)), None)
 
 
-def _hardness(evidence: Evidence) -> str | None:
-    most = evidence.problem.largest_load(evidence.state.slopes)
-    if evidence.problem.load is None or evidence.problem.load <= most:
-        return None
-    return f"at the hardness everywhere the contact carries {most:.6g} N at most on the slopes of this state"
-
-
-def _pressure(evidence: Evidence) -> str | None:
-    problem, modulus = evidence.problem, evidence.scene.materials.reduced_modulus
-    if problem.load is None or problem.load <= modulus * problem.grid.nominal_area:
-        return None
-    times = problem.load / (modulus * problem.grid.nominal_area)
-    return f"the mean pressure is {times:.3g} times the reduced modulus, where lagged slopes diverge"
-
-
-def _coupling(evidence: Evidence) -> str | None:
-    problem = evidence.problem
+def _causes(evidence: Evidence) -> Iterator[str]:
+    problem, state, load = evidence.problem, evidence.state, evidence.problem.load
+    most = problem.largest_load(state.slopes)
+    if load is not None and not load <= most:
+        yield (
+            f"at the hardness everywhere the contact carries {most:.6g} N at most on the slopes of this state"
+        )
+    borne = evidence.scene.materials.reduced_modulus * problem.grid.nominal_area
+    if load is not None and not load <= borne:
+        times = f"{load / borne:.3g} times"
+        yield f"the mean pressure is {times} the reduced modulus, where lagged slopes diverge"
     strength = abs(problem.friction.slope * problem.elasticity.coupling_ratio)
-    if evidence.plan.method == "dense" or strength <= _STRONG_COUPLING:
-        return None
-    return f"coupling beta c / a = {strength:.3g}, above {_STRONG_COUPLING:g}: lagged updates do not contract"
-
-
-def _tilt(evidence: Evidence) -> str | None:
-    """Describe the adhesive shear that carries more than the load on the slopes that it makes by itself."""
-    problem, state = evidence.problem, evidence.state
-    if problem.load is None:
-        return None
+    if evidence.plan.method != "dense" and not strength <= _STRONG_COUPLING:
+        above = f"{strength:.3g}, above {_STRONG_COUPLING:g}"
+        yield f"coupling beta c / a = {above}: lagged updates do not contract"
     held = state.traction - problem.friction.slope * state.pressure
-    _, offset = problem.load_weights(state.slopes, held)
-    if abs(offset) <= problem.load:
-        return None
-    return f"tau on slopes carries {abs(offset) / problem.load:.3g} times the load"
-
-
-def _excluded(evidence: Evidence) -> str | None:
-    excluded, contact = (np.count_nonzero(x) for x in (evidence.state.excluded, evidence.state.contact))
-    if 2 * excluded <= contact:
-        return None
-    return f"under tau {excluded} of {contact} elements in contact carry no adhesive shear, more than half"
+    carried = abs(
+        problem.load_weights(state.slopes, held)[1]
+    )  # by tau, on the slopes that it makes by itself
+    if load is not None and not carried <= load:
+        yield f"tau on slopes carries {carried / load:.3g} times the load"
+    excluded, contact = np.count_nonzero(state.excluded), np.count_nonzero(state.contact)
+    if 2 * excluded > contact:
+        yield f"under tau {excluded} of {contact} elements in contact carry no adhesive shear, more than half"

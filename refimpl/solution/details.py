@@ -20,8 +20,7 @@ from refimpl.model.slopes import Slopes
 from refimpl.model.state import Status
 from refimpl.planning.plan import Plan
 from refimpl.planning.term_effects import Effect
-from refimpl.solution.cost import Cost
-from refimpl.solution.evidence import Evidence
+from refimpl.solution.evidence import Cost, Evidence
 from refimpl.solution.model_warning import Notice
 
 

@@ -43,30 +43,20 @@ def implausible(scene: Scene, plan: Plan) -> Iterator[ModelWarning]:
     for name, body in (("lower", scene.lower), ("upper", scene.upper)):
         yield from _material(name, body.material, scene.friction.jump)
         yield from _surface(name, scene)
-    mean = plan.contact.mean_pressure
-    if mean > 0 and scene.friction.jump > _STRONG * mean:
-        yield _warning(
-            scene.friction.jump,
-            _STRONG * mean,
-            f"tau, {scene.friction.jump:.4g} Pa, is {scene.friction.jump / mean:.3g} times the mean contact "
-            "pressure to be expected: did you mean MPa (15 MPa is 15e6), and "
-            f"is the load, {scene.load:.4g} N, right?",
+    mean, tau, angle = plan.contact.mean_pressure, scene.friction.jump, scene.sliding_direction
+    if mean > 0 and tau > _STRONG * mean:
+        text = (
+            f"tau, {tau:.4g} Pa, is {tau / mean:.3g} times the mean contact pressure to be expected: "
+            f"did you mean MPa (15 MPa is 15e6), and is the load, {scene.load:.4g} N, right?"
         )
+        yield _warning(tau, _STRONG * mean, text)
     expected = friction_coefficient_at(scene.friction, mean) * mean if mean > 0 else 0.0
-    if 0 < scene.friction.jump < _WEAK * expected:
-        yield _warning(
-            scene.friction.jump,
-            _WEAK * expected,
-            f"tau, {scene.friction.jump:.4g} Pa, is less than {_WEAK:.1%} of the friction to be expected: "
-            "did you mean MPa (60 MPa is 60e6)?",
-        )
-    if abs(scene.sliding_direction) > _FULL_TURN:
-        yield _warning(
-            abs(scene.sliding_direction),
-            _FULL_TURN,
-            f"sliding_direction, {scene.sliding_direction:.4g} rad, is beyond a full turn: did you mean "
-            "degrees (45 degrees are 0.785 rad)?",
-        )
+    if 0 < tau < _WEAK * expected:
+        less = f"tau, {tau:.4g} Pa, is less than {_WEAK:.1%} of the friction to be expected"
+        yield _warning(tau, _WEAK * expected, f"{less}: did you mean MPa (60 MPa is 60e6)?")
+    if abs(angle) > _FULL_TURN:
+        text = f"sliding_direction, {angle:.4g} rad, is beyond a full turn: did you mean degrees"
+        yield _warning(abs(angle), _FULL_TURN, f"{text} (45 degrees are 0.785 rad)?")
     yield from _index(scene, plan)
 
 
@@ -106,11 +96,8 @@ def _surface(name: str, scene: Scene) -> Iterator[ModelWarning]:
         if isinstance(part, GaussianRoughness | SelfAffineRoughness):
             for label, length in part.parameters().items():
                 if label.startswith(_LENGTHS) and length > shorter:
-                    text = (
-                        f"{name}: {label} {length:.4g} m is beyond the domain's {shorter:.4g} m: "
-                        "did you mean um (100 um is 100e-6)?"
-                    )
-                    yield _warning(length, shorter, text)
+                    text = f"{name}: {label} {length:.4g} m is beyond the domain's {shorter:.4g} m"
+                    yield _warning(length, shorter, f"{text}: did you mean um (100 um is 100e-6)?")
             rms = part.parameters().get("rms", 0.0)
             if rms > shorter:
                 text = f"{name}: rms {rms:.4g} m is beyond the domain's {shorter:.4g} m: did you mean um?"
@@ -125,8 +112,5 @@ def _index(scene: Scene, plan: Plan) -> Iterator[ModelWarning]:
         return
     index = scene.materials.reduced_modulus / hardness * math.hypot(*(part.rms_slope for part in rough))
     if index > _INDEX:
-        text = (
-            f"plasticity index {index:.3g} is beyond {_INDEX:g}: units of E, hardness, rms and correlation "
-            "length?"
-        )
-        yield _warning(index, _INDEX, text)
+        text = f"plasticity index {index:.3g} is beyond {_INDEX:g}: units of E, hardness, rms and correlation"
+        yield _warning(index, _INDEX, f"{text} length?")

@@ -11,8 +11,8 @@ from refimpl.model.certificate import Certificate
 from refimpl.model.slopes import Slopes
 from refimpl.model.state import Status
 from refimpl.planning.plan import Plan
-from refimpl.solution.cost import Cost
 from refimpl.solution.details import Details, part
+from refimpl.solution.evidence import Cost
 from refimpl.solution.limits import model_warnings
 from refimpl.solution.model_warning import ModelWarning, Notice
 from refimpl.solution.plausibility import notes
@@ -24,8 +24,10 @@ class _Fields(Numbers):
 
     pressure: Array = part("details.state")
     traction: Array = part("details.state")
+    contact: Mask = part("details.state")
     slopes: Slopes = part("details.state")
     certificate: Certificate = part("details.state")
+    surfaces: tuple[Array, Array] = part("details.evidence")
     grid: Grid = part("details.problem")
     status: Status = part("details")
     plan: Plan = part("details")
@@ -53,12 +55,6 @@ class Record(_Fields):
         return tuple(sorted(found, key=lambda text: text.limit == Notice.limit))
 
     @cached_property
-    def surfaces(self) -> tuple[Array, Array]:
-        """Deformed heights of the lower and the upper surface (m)."""
-        lower, upper = self.details.evidence.surfaces
-        return read_only(lower), read_only(upper)
-
-    @cached_property
     def gap(self) -> Array:
         """Deformed gap by Eq. (6) (m)."""
         return read_only(self.details.state.gap)
@@ -68,11 +64,6 @@ class Record(_Fields):
         """Depth w_p by which the softer body has yielded (m)."""
         indentation = self.details.state.indentation
         return read_only(self.grid.zeros if indentation is None else indentation)
-
-    @property
-    def contact(self) -> Mask:
-        """Elements with ``f > 0``."""
-        return self.pressure > 0
 
     @property
     def converged(self) -> bool:

@@ -9,12 +9,10 @@ from typing import Any
 from refimpl.accuracy.grid_features import GridFeatures
 from refimpl.grid import Grid
 from refimpl.solution import display
-from refimpl.solution.arrays import as_dataset
-from refimpl.solution.cost import Cost
+from refimpl.solution.arrays import Patch, as_dataset, patches_of
 from refimpl.solution.details import Details
-from refimpl.solution.evidence import Evidence
+from refimpl.solution.evidence import Cost, Evidence
 from refimpl.solution.model_warning import Notice, plain_warning
-from refimpl.solution.patches import Patch, patches_of
 from refimpl.solution.quantities import QUANTITIES
 from refimpl.solution.record import Record
 

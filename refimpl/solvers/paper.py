@@ -18,6 +18,7 @@ from __future__ import annotations
 import math
 from copy import copy
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import scipy
@@ -213,10 +214,9 @@ class _Scheme:
             inside = inside | returning
             change = float(np.abs(self.pressure - before).max()) / max(float(self.pressure.max()), 1e-300)
             before = self.pressure
-            if not returning.any() and change <= _PRESSURE_SHARE * self.tolerance:
-                break
-            if self.exhausted:
-                self.settled = False
+            done = not returning.any() and change <= _PRESSURE_SHARE * self.tolerance
+            if done or self.exhausted:
+                self.settled &= done
                 break
         else:
             self.settled = False
@@ -239,12 +239,12 @@ class _Scheme:
 
     def _iterate(self, u: Array, inside: Mask, *, on_circle: bool) -> Mask:
         """Run (1b) periodic inversion or (1c) residual correction, with (1b') exclusion."""
-        flexibility = self._apply_periodic if on_circle else self._apply
+        flexibility = partial(self._on_circle, np.multiply) if on_circle else self._apply
         pressure = self.pressure * inside
         answer = flexibility(pressure)
         for _ in range(_STEPS):
             residual = (u - answer) * inside
-            step = self._invert(residual) * inside
+            step = self._on_circle(np.divide, residual) * inside
             moved = flexibility(step)
             curvature = inner(step, moved)
             if curvature <= 0:
@@ -259,10 +259,9 @@ class _Scheme:
             pressure = found
             self.trace.periodic_steps += on_circle
             self.trace.correction_steps += not on_circle
-            if change <= _PRESSURE_SHARE * self.tolerance * float(np.linalg.norm(found)):
-                break
-            if self.exhausted:
-                self.settled = False
+            done = change <= _PRESSURE_SHARE * self.tolerance * float(np.linalg.norm(found))
+            if done or self.exhausted:
+                self.settled &= done
                 break
         else:
             self.settled = False
@@ -276,12 +275,7 @@ class _Scheme:
     def _apply(self, pressure: Array) -> Array:
         return self.problem.elasticity.normal(self.operator, pressure)
 
-    def _apply_periodic(self, pressure: Array) -> Array:
-        self.operator.counter.add("periodic", pressure.size)
-        result: Array = scipy.fft.irfft2(scipy.fft.rfft2(pressure) * self._periodic_hat, s=pressure.shape)
-        return result
-
-    def _invert(self, residual: Array) -> Array:
-        self.operator.counter.add("periodic", residual.size)
-        result: Array = scipy.fft.irfft2(scipy.fft.rfft2(residual) / self._periodic_hat, s=residual.shape)
-        return result
+    def _on_circle(self, by: np.ufunc, values: Array) -> Array:
+        """Return the periodic product (`np.multiply`) or its inverse (`np.divide`)."""
+        self.operator.counter.add("periodic", values.size)
+        return np.asarray(scipy.fft.irfft2(by(scipy.fft.rfft2(values), self._periodic_hat), s=values.shape))

@@ -32,7 +32,8 @@ def surface_from_dict(table: dict[str, Any], folder: Path = Path(), place: str =
     known = [f for f in fields(KINDS[kind]) if f.init]  # type: ignore[arg-type]  # all are dataclasses
     for key, value in parameters.items():
         if key not in (f.name for f in known):
-            raise InputError(f"{place}.{key}", value, f"a key of kind {kind}: {_names(known)}")
+            names = ", ".join(f.name for f in known) or "none"
+            raise InputError(f"{place}.{key}", value, f"a key of kind {kind}: {names}")
     for f in known:
         if f.name not in parameters and f.default is MISSING:
             raise InputError(f"{place}.{f.name}", None, f"a value: kind {kind} needs {f.name}")
@@ -48,7 +49,3 @@ def _sum_from_dict(parameters: dict[str, Any], folder: Path, place: str) -> Surf
         raise InputError(f"{place}.terms", terms, "a list of surface tables")
     surfaces = [surface_from_dict(term, folder, f"{place}.terms[{k}]") for k, term in enumerate(terms)]
     return SurfaceSum(tuple(part for surface in surfaces for part in surface.parts))
-
-
-def _names(known: list[Any]) -> str:
-    return ", ".join(f.name for f in known) or "none"

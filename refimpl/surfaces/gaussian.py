@@ -119,7 +119,8 @@ class GaussianRoughness(Surface):
         return ("rms",) if lattice else tuple(name for name in self.parameters() if name != "seed")
 
     def heights_on(self, grid: Grid, offset: tuple[float, float]) -> Array:
-        return self._field(grid.x + offset[0], grid.y + offset[1], grid) * self._scale(grid)
+        scale = self.rms / self._realised_rms(grid) if self.normalise else 1.0
+        return self._field(grid.x + offset[0], grid.y + offset[1], grid) * scale
 
     def _field(self, x: Array, y: Array, grid: Grid) -> Array:
         """Return the ensemble heights (m) at all pairs of ``x``, ``y``."""
@@ -138,13 +139,10 @@ class GaussianRoughness(Surface):
         return NoiseLattice(self.ellipse, self._refused)
 
     def _waves(self, x: Array, y: Array, grid: Grid) -> Array:
-        lattice = self._wave_lattice(grid)
+        shortest = [2.0 * math.pi / _REACH * length for length in self.ellipse.on_axes]
+        lattice = PeriodicLattice.holding(grid.lengths, shortest, self._refused)
         scale = self.rms / math.sqrt(lattice.mean_squares(self._amplitude)[0])
         return scale * lattice.field(self._amplitude, self.seed, x, y)
-
-    def _wave_lattice(self, grid: Grid) -> PeriodicLattice:
-        along_x, along_y = (2.0 * math.pi / _REACH * length for length in self.ellipse.on_axes)
-        return PeriodicLattice.holding(grid.lengths, (along_x, along_y), self._refused)
 
     def _amplitude(self, qx: Array, qy: Array) -> Array:
         """Return the root of Eq. (9)'s transform over its peak."""
@@ -163,9 +161,6 @@ class GaussianRoughness(Surface):
         least = factor * float(np.min(self.correlation_length))
         need = f"at least {least:.3g} m on this domain ({limit})"
         raise InputError("correlation_length", self.correlation_length, need)
-
-    def _scale(self, grid: Grid) -> float:
-        return self.rms / self._realised_rms(grid) if self.normalise else 1.0
 
     def _realised_rms(self, grid: Grid) -> float:
         """Return the domain's standard deviation (m): 10 Gauss points per half length (error < 1e-12)."""

@@ -99,7 +99,8 @@ class SelfAffineRoughness(Surface):
             "a positive rms height in m" if given == "rms" else "a positive rms of the gradient's length"
         )
         require_size(given, sizes[given], allowed)
-        size, ratio = float(sizes[given]), self._gradient_per_height
+        stretched = 0.5 * ((1.0 / self.anisotropy) ** 2 + 1.0)
+        size, ratio = float(sizes[given]), math.sqrt(self.moment(2) / self.moment(0) * stretched)
         object.__setattr__(self, "given", given)
         object.__setattr__(self, "rms", size if given == "rms" else size / ratio)
         object.__setattr__(self, "rms_gradient", size * ratio if given == "rms" else size)
@@ -118,11 +119,6 @@ class SelfAffineRoughness(Surface):
         octaves = math.log(high / roll)
         tail = math.expm1(exponent * octaves) / exponent if exponent else octaves
         return ((roll**n - low**n) / n + roll**n * tail) / (2.0 * math.pi)
-
-    @property
-    def _gradient_per_height(self) -> float:
-        along, across = 1.0 / self.anisotropy, 1.0
-        return math.sqrt(self.moment(2) / self.moment(0) * 0.5 * (along**2 + across**2))
 
     @property
     def rms_slope(self) -> float:

@@ -28,7 +28,7 @@ import scipy
 from numpy.typing import NDArray
 
 from refimpl.grid import Array
-from refimpl.surfaces.white_noise import white_noise
+from refimpl.surfaces.noise_lattice import white_noise
 
 Spectrum = Callable[[Array, Array], Array]
 """Amplitude a (m) at wave vectors ``(qx, qy)`` (rad/m); even, and zero beyond the waves that are summed."""

@@ -67,7 +67,7 @@ def write_patches(solution: Solution, path: Path) -> None:
     """Write a row for each contact patch, units in the headers."""
     from dataclasses import astuple, fields
 
-    from refimpl.solution.patches import Patch
+    from refimpl.solution.arrays import Patch
     from verification.output.files import write_text
 
     buffer = io.StringIO()

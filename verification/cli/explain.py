@@ -9,10 +9,10 @@ import math
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from refimpl.half_space.warning import ALLOWED, expected_error
+from refimpl.half_space.model_form import ALLOWED, expected_error
 from refimpl.planning.expected_contact import WITHIN
 from refimpl.scene.discretise import discretise
-from refimpl.scene.resolution import resolution
+from refimpl.solution.domain_error import resolution
 from refimpl.solution.rough_contact import estimates_of
 from verification.output.text_table import columns
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from refimpl.errors import InputError
-from refimpl.scene.key_texts import FRICTION, MATERIAL, SCENE, SURFACES
+from refimpl.scene.scene_file import FRICTION, MATERIAL, SCENE, SURFACES
 from refimpl.solution.quantities import QUANTITIES
 from verification.output.files import replacing, write_text
 from verification.sweep.run import Row

@@ -9,7 +9,6 @@ from typing import get_type_hints
 
 from refimpl.driver.options import Options
 from refimpl.model.problem import Terms
-from refimpl.scene.key_texts import FRICTION, SCENE
 from refimpl.scene.keys import (
     REQUIRED,
     SAMPLES,
@@ -22,7 +21,7 @@ from refimpl.scene.keys import (
     type_in_words,
 )  # fmt: skip
 from refimpl.scene.parameters import differentiable_parameters, parameters
-from refimpl.scene.scene_file import scene_from_dict
+from refimpl.scene.scene_file import FRICTION, SCENE, scene_from_dict
 from verification.sweep.study import AXES
 from verification.sweep.study_file import KEYS, SOLVE_KEYS, study_from_dict, varied_names
 

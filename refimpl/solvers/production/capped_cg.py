@@ -16,8 +16,8 @@ from refimpl.grid import Array, Mask, inner
 from refimpl.model.certificate import contact_residuals
 from refimpl.operators.preconditioner import Apply
 from refimpl.solvers.production.constants import VANISHING
+from refimpl.solvers.production.contact_vectors import cut_at_zero, longest_step
 from refimpl.solvers.production.projected_cg import ProjectedCG
-from refimpl.solvers.production.step_length import cut_at_zero, longest_step
 
 _LOAD_ROUNDING = 1e-14  # relative rounding error of the load's sum
 _FULL = 0.9  # share of the cap up to which elements that come into contact are filled

@@ -31,7 +31,7 @@ NEAR_ROUNDING = 1e-12  # residual below which steps or updates without progress 
 ROUNDING_PATIENCE = 8  # CG steps without a tenth's progress there: at 1e-16 100 CG steps in place of 1000
 UPDATE_LIMIT = 600  # updates of the lagged terms in one solve; the extreme scenes take 59 at most
 
-# Projected CG (`projected_cg`, `step_length`, `contact_vectors`)
+# Projected CG (`projected_cg`, `contact_vectors`)
 FIRST_LENGTH = 0.7  # first step length: the preconditioned spectrum lies between 1 and 2 (tests)
 TRIAL_SHARE = 0.8  # trial over last best length: longer trials leave cut elements halfway
 TRUSTED = (0.4, 3.0)  # best over trial length; beyond, the next step finds its length before it cuts

@@ -28,8 +28,8 @@ from refimpl.solvers.production.constants import (
     STEEPEST_COSINE,
     WEAK_COUPLING,
 )
+from refimpl.solvers.production.plastic import settled_indentation
 from refimpl.solvers.production.projected_cg import ProjectedCG
-from refimpl.solvers.production.settled_indentation import settled_indentation
 from refimpl.solvers.tau_active_set import ActiveSet, first_set
 
 

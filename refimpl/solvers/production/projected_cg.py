@@ -29,8 +29,7 @@ from refimpl.grid import Array, Mask, inner
 from refimpl.model.certificate import contact_residuals
 from refimpl.operators.preconditioner import Apply
 from refimpl.solvers.production.constants import CERTAINTY, FIRST_LENGTH, TRIAL_SHARE, TRUSTED, VANISHING
-from refimpl.solvers.production.contact_vectors import ContactVectors
-from refimpl.solvers.production.step_length import cut_at_zero, longest_step, step_share
+from refimpl.solvers.production.contact_vectors import ContactVectors, cut_at_zero, longest_step, step_share
 
 
 class Separation(NamedTuple):
@@ -142,7 +141,8 @@ class ProjectedCG:
         if self._exchanged:
             self._exchange()
         residual = self._residual_on_contact()  # [PK 2]
-        direction = self._conjugate(residual, self._projected(self._preconditioned(residual)))  # [PK 3]
+        step = self._vectors.gather(self._precondition(self._vectors.scatter(residual)))
+        direction = self._conjugate(residual, self._projected(step))  # [PK 3]
         self._exchanged = False
         if not (self._trusted and self._step_to_trial(residual, direction)):
             self._step_then_cut(residual, direction)
@@ -177,9 +177,6 @@ class ProjectedCG:
             return values
         values -= (inner(self._weights, values) / self._norm) * self._weights
         return values
-
-    def _preconditioned(self, residual: Array) -> Array:
-        return self._vectors.gather(self._precondition(self._vectors.scatter(residual)))
 
     def _conjugate(self, residual: Array, step: Array) -> Array:
         product = inner(residual, step)

@@ -58,6 +58,19 @@ def test_seconds_that_the_opening_grids_exceed_are_refused_by_name() -> None:
         rf.solve(HARD, accuracy=0.1, max_seconds=1e-9)
 
 
+def test_bytes_beyond_the_limit_end_a_refinement_on_the_grid_within_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of a process that holds nothing else: a tenth more than 64 elements a side take."""
+    monkeypatch.setattr(
+        "psutil.Process", lambda: SimpleNamespace(memory_info=lambda: SimpleNamespace(rss=0.0))
+    )
+    most = 1.1 * rf.solve(HARD, 64).plan.memory
+    found = rf.solve(HARD, accuracy=1e-6, max_memory=most, max_grid=256)
+    assert (found.status, max(found.grid.shape)) == (rf.Status.ACCURACY_NOT_REACHED, 64)
+    assert re.search(r"not to 1e-06: grid = \d+: .* beside 0 GB in use, are at most", found.warnings[0])
+
+
 GRID = rf.Grid((10, 20), (1e-3, 2e-3))
 
 

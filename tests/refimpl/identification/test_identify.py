@@ -17,8 +17,7 @@ from refimpl.identification.ensemble import mean_response, scatter, working_vari
 from refimpl.identification.fit import linear_fit, profile_of, shares
 from refimpl.identification.forward import COVERAGE, Response
 from refimpl.identification.laws import _law
-from refimpl.identification.profile import Profile
-from refimpl.identification.varying_profile import VaryingProfile
+from refimpl.identification.profile import Profile, VaryingProfile
 from refimpl.scene.scene_file import read_scene
 
 LOADS = 5.0, 10.0, 20.0, 40.0, 80.0

@@ -14,7 +14,7 @@ from refimpl.identification.design import Proposal
 from refimpl.identification.ensemble import is_random, redrawn
 from refimpl.identification.forward import Forward, Response
 from refimpl.identification.laws import Law
-from refimpl.identification.notes import notes
+from refimpl.identification.result import notes
 
 SCENE = rf.read_scene("hertz")
 LOADS, SIZE = (1.0, 2.0, 5.0, 10.0, 20.0), math.log(2.0)

@@ -15,7 +15,7 @@ from refimpl.driver.options import Options
 from refimpl.grid import Grid
 from refimpl.model.problem import Terms
 from refimpl.scene.discretise import discretise
-from refimpl.scene.resolution import resolution
+from refimpl.solution.domain_error import resolution
 
 STEEL = rf.Material(200e9, 0.3)
 ROUGH = rf.GaussianRoughness(rms=1e-6, correlation_length=400e-6, seed=7)

@@ -12,8 +12,7 @@ import refimpl as rf
 from refimpl.driver.reference import solve_reference
 from refimpl.grid import Array, Grid, Mask
 from refimpl.scene.discretise import discretise
-from refimpl.sensitivities.edge_motion import EdgeMotion
-from refimpl.sensitivities.fixed_contact import FixedContact
+from refimpl.sensitivities.fixed_contact import EdgeMotion, FixedContact
 from tests.refimpl.sensitivities.test_sensitivity import sliding
 
 M = 48

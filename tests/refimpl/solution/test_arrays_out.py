@@ -17,9 +17,8 @@ import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.solution import display
-from refimpl.solution.arrays import as_dataset, attributes_of
+from refimpl.solution.arrays import as_dataset, attributes_of, patches_of
 from refimpl.solution.model_warning import Notice
-from refimpl.solution.patches import patches_of
 from tests.changed import changed
 
 

@@ -14,8 +14,7 @@ from refimpl.driver.reference import solve_reference
 from refimpl.grid import Array, Grid, Mask
 from refimpl.model.problem import Terms
 from refimpl.scene.discretise import discretise
-from refimpl.solution.data_error import data_error, finest_by_data
-from refimpl.solution.domain_error import unseen_parts
+from refimpl.solution.domain_error import data_error, finest_by_data, unseen_parts
 from refimpl.surfaces import Surface
 from tests import plate
 

@@ -201,3 +201,19 @@ def test_below_the_table_errors_are_proportional_to_the_tangent() -> None:
 def test_beyond_the_table_is_refused(slope: float, pair: tuple[rf.Material, ...], refusal: str) -> None:
     with pytest.raises(rf.InputError, match=refusal):
         element_error(slope, *pair)
+
+
+def test_the_shipped_tables_have_the_axes_that_interpolation_needs() -> None:
+    """Cubics over slope and wavenumber, harmonics from crest to valley, both neighbours; quadratic in nu."""
+    axes = {name: np.array(TABLE[name]) for name in ("slope_deg", "wavelength", "position", "offset")}
+    assert TABLE["version"] == TABLE_3D["version"] == 1
+    assert all((np.diff(values) > 0).all() for values in axes.values())
+    assert min(len(axes["slope_deg"]), len(axes["wavelength"])) >= 4
+    np.testing.assert_allclose(axes["position"], np.linspace(0, 0.5, len(axes["position"])), atol=1e-12)
+    assert {-2.0, 2.0} <= set(axes["offset"])
+    shape = tuple(map(len, axes.values()))
+    assert np.shape(TABLE["kappa_part"]) == np.shape(TABLE["constant_part"]) == shape
+    slopes, ratios, places = ({key[axis] for key in ROWS} for axis in range(3))
+    assert len(slopes) >= 2
+    assert len(ratios) >= 3
+    assert {0.0, 0.25, 0.5} <= places

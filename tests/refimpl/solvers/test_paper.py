@@ -79,6 +79,13 @@ def test_a_loop_that_meets_its_limit_says_so(limit: str, monkeypatch: pytest.Mon
     assert result.status is Status.ITERATION_LIMIT
 
 
+def test_a_spent_budget_is_said_at_an_approach_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No load is balanced there, so the loops within say it themselves."""
+    at = replace(hertz(friction=rf.Friction(beta=0.1)), load=None, approach=1e-6)
+    monkeypatch.setattr(module, "_BUDGET", 3)
+    assert module.solve_paper(at, 1e-9, Counter())[0].status is Status.ITERATION_LIMIT
+
+
 def test_a_spent_budget_ends_every_loop(monkeypatch: pytest.MonkeyPatch) -> None:
     """Limits of nested loops do not multiply. The mean pressure is the modulus here."""
     z = np.random.default_rng(1).normal(size=(16, 16))

@@ -15,7 +15,7 @@ import pytest
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.measured import MeasuredSurface, reader_process, readers
-from refimpl.measured.untrusted import read_untrusted
+from refimpl.measured.reader_process import read_untrusted
 from tests.refimpl.surfaces.measured import DX, DY, NX, NY, RNG, ROUGH, SIDE, write_npy, write_x3p
 
 

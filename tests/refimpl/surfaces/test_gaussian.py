@@ -13,7 +13,7 @@ import pytest
 from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.surfaces import GaussianRoughness, SurfaceWarning, gaussian
-from refimpl.surfaces.white_noise import white_noise
+from refimpl.surfaces.noise_lattice import white_noise
 
 SIDE, LENGTH = 1.61e-3, 104e-6
 GRID = Grid.square(SIDE, 64)
@@ -193,3 +193,20 @@ def test_levels_of_the_autocorrelation() -> None:
 def test_bad_parameters_are_refused(changes: dict[str, Any], field: str) -> None:
     with pytest.raises(InputError, match=field):
         GaussianRoughness(**{"rms": 1.0, "correlation_length": 1.0, "seed": 2**63 - 1} | changes)
+
+
+def test_a_period_has_six_nodes_a_length_at_least() -> None:
+    """Of 18.2 nodes there are 19, which divide the period."""
+    nodes, _ = GaussianRoughness(rms=1e-6, correlation_length=0.33, seed=1).smoothing(
+        np.linspace(0, 1, 200), 1.0
+    )
+    assert nodes == range(19)
+
+
+def test_waves_of_a_period_beyond_the_last_add_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Noise belongs to wave numbers: half as many again leave the heights as they are."""
+    surface = GaussianRoughness(rms=1.0, correlation_length=(0.2, 0.1), seed=3, lay=0.4)
+    grid = Grid.square(1.0, 48, periodic=True)
+    z = surface.sample(grid)
+    monkeypatch.setattr(gaussian, "_REACH", 1.5 * gaussian._REACH)
+    np.testing.assert_allclose(surface.sample(grid), z, rtol=0, atol=1e-12)

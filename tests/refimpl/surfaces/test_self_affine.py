@@ -20,8 +20,8 @@ import refimpl as rf
 from refimpl.errors import InputError
 from refimpl.grid import Array, Grid
 from refimpl.surfaces import SelfAffineRoughness, SurfaceWarning, surface_from_dict, waves
+from refimpl.surfaces.noise_lattice import STREAM, white_noise
 from refimpl.surfaces.waves import MAX_WAVES, PeriodicLattice
-from refimpl.surfaces.white_noise import STREAM, white_noise
 
 SIDE = 1e-3
 PARAMETERS: dict[str, Any] = {

@@ -9,8 +9,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.measured.missing_points import fill
-from refimpl.measured.preparation import outlying
-from refimpl.measured.standing_out import FAR, scars
+from refimpl.measured.preparation import FAR, outlying, scars
 from tests import plate
 
 POINTS = (160, 120)

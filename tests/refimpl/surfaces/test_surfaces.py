@@ -25,7 +25,7 @@ from refimpl.surfaces import (
     as_surface,
     surface_from_dict,
 )
-from refimpl.surfaces.bicubic import resample_periodic
+from refimpl.surfaces.arrays import resample_periodic
 
 GRID = Grid.square(2e-3, 16)
 EPS = np.finfo(float).eps

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from refimpl import InputError
-from refimpl.scene import key_texts
+from refimpl.scene import scene_file
 from refimpl.scene.keys import REQUIRED, SAMPLES, sample_scene, scene_keys
-from refimpl.scene.scene_file import _OPTIONAL_KEYS, _SCENE_KEYS, scene_from_dict
+from refimpl.scene.scene_file import _OPTIONAL_KEYS, scene_from_dict
 from refimpl.surfaces import surface_from_dict
 from refimpl.surfaces.from_table import KINDS
 from tests.documents import ROOT
@@ -36,7 +36,7 @@ def test_the_page_has_a_place_for_every_table_and_the_site_fills_it() -> None:
 
 
 def test_all_keys_that_a_file_may_have_are_there() -> None:
-    assert {key.name for key in TABLES["scene"]} == set(_SCENE_KEYS)
+    assert {key.name for key in TABLES["scene"]} == set(scene_file.SCENE)
     assert {key.name for key in study_keys()["study"]} == set(KEYS)
     assert {key.name for key in study_keys()["solve"]} == set(SOLVE_KEYS)
     with pytest.raises(InputError) as refused:  # the reader's own list of the keys of that kind
@@ -46,7 +46,7 @@ def test_all_keys_that_a_file_may_have_are_there() -> None:
 
 
 def test_a_table_of_no_surface_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(key_texts.SURFACES, "bogus", {})
+    monkeypatch.setitem(scene_file.SURFACES, "bogus", {})
     with pytest.raises(LookupError, match="bogus"):
         scene_keys()
 

@@ -15,10 +15,10 @@ import pytest
 import refimpl as rf
 from refimpl.planning.term_effects import Effect
 from refimpl.planning.terms import LABELS, Term
-from refimpl.scene.resolution import Resolution
 from refimpl.sensitivities.budget import Budget, Budgets
 from refimpl.sensitivities.difference_quotients import NUMBERS
 from refimpl.sensitivities.sensitivity import Sensitivity
+from refimpl.solution.domain_error import Resolution
 from refimpl.surfaces.surface import Detail
 from tests.verification.cli.commands import answer, shown
 from verification.cli import budget, explain

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.solution.patches import Patch
+from refimpl.solution.arrays import Patch
 from refimpl.solution.quantities import QUANTITIES
 from tests.changed import changed
 from tests.verification.cli.commands import SCENE, answer, run, shown

@@ -14,9 +14,8 @@ from refimpl.operators.influence import window_influence
 from refimpl.operators.preconditioner import Apply, SpectralPreconditioner
 from refimpl.solvers.production import contact_vectors
 from refimpl.solvers.production.capped_cg import CappedCG, filled_up
-from refimpl.solvers.production.contact_vectors import ContactVectors
+from refimpl.solvers.production.contact_vectors import ContactVectors, cut_at_zero
 from refimpl.solvers.production.projected_cg import ProjectedCG
-from refimpl.solvers.production.step_length import cut_at_zero
 from verification.exact.dense_influence import DenseInfluence
 
 M, SIDE, COMPLIANCE = 10, 1e-3, 1e-11
