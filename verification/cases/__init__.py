@@ -2,6 +2,6 @@
 
 from verification.framework.case import Measured, Unavailable
 from verification.framework.registry import case, family
-from verification.framework.verdict import Verdict, judged
+from verification.framework.verdict import Verdict, judged, percents
 
-__all__ = ["Measured", "Unavailable", "Verdict", "case", "family", "judged"]
+__all__ = ["Measured", "Unavailable", "Verdict", "case", "family", "judged", "percents"]

@@ -6,8 +6,9 @@ import numpy as np
 from scipy.integrate import quad
 
 import refimpl as rf
+from refimpl.grid import Array
 from verification.cases import Measured, case, family
-from verification.cases.contact.scenes import COUPLING, MODULUS, Array, centres, press
+from verification.cases.contact.scenes import COUPLING, MODULUS, centres, press
 from verification.cases.contact.waves import AMPLITUDE, WAVELENGTH, ridge
 from verification.exact.coupled_indentation import CoupledHertz, ShearedSphere
 from verification.exact.hertz import Sphere

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
 from verification.cases import Measured, case, family
+from verification.exact import coupled_indentation
 from verification.exact.hertz import Sphere
 
 SOURCE = "paper sections 3 and 7, Fig. 5; Johnson 1985, sections 3.6, 3.7"
@@ -41,18 +42,9 @@ def centroid(pressure: Array, direction: float) -> tuple[float, float]:
     return cos * x + sin * y, cos * y - sin * x
 
 
-def first_order_shift(tau: float, beta: float) -> float:
-    """Shift of the pressure's centroid (m) to first order in the coupling.
-
-    Friction ``Q(r)`` within r displaces the surfaces by ``c0 x Q(r)/r^2`` (Gauss). Betti's theorem with the
-    tilted punch, ``p = (2 E* / pi) x / sqrt(a^2 - r^2)`` for the displacement x, turns that into the moment
-    ``-2 E* c0 integral of Q(r) r / sqrt(a^2 - r^2) dr`` of the pressure; with Hertz's Q over P it is
-
-        -pi c0 tau R - 3/2 E* c0 beta a.
-    """
-    E, c0 = SCENE.materials.reduced_modulus, SCENE.materials.shear_compliance
-    a = Sphere(SCENE.load, RADIUS, E).contact_radius
-    return -math.pi * c0 * tau * RADIUS - 1.5 * E * c0 * beta * a
+HERTZ = Sphere(SCENE.load, RADIUS, SCENE.materials.reduced_modulus)
+first_order_shift = partial(coupled_indentation.first_order_shift, HERTZ, SCENE.materials.shear_compliance)
+"""Shift of the pressure's centroid (m) by tau (Pa) and beta."""
 
 
 @case("sliding/trailing-edge", metric="relative", tolerance=3e-3)
@@ -68,13 +60,12 @@ def trailing_edge() -> Measured:
     tau, beta = SCENE.friction.tau, SCENE.friction.beta
     solution, still = solved(tau, beta), solved(0.0, 0.0)
     middle, x = M // 2, offset() * 1e3
-    hertz = Sphere(SCENE.load, RADIUS, SCENE.materials.reduced_modulus)
     data = {
         "x": x,
         "pressure along": solution.pressure[:, middle] / 1e6,
         "traction along": solution.traction[:, middle] / 1e6,
-        "hertz pressure": hertz.pressure(offset()) / 1e6,
-        "hertz traction": 0.08 * hertz.pressure(offset()) / 1e6,
+        "hertz pressure": HERTZ.pressure(offset()) / 1e6,
+        "hertz traction": 0.08 * HERTZ.pressure(offset()) / 1e6,
         "change by friction": (solution.pressure - still.pressure)[:, middle] / 1e6,
         "pressure": solution.pressure[::4, ::4] / 1e6,
         "traction": solution.traction[::4, ::4] / 1e6,
