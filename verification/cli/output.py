@@ -31,7 +31,7 @@ def refusal(field: str, value: object, allowed: str) -> InputError:
 
 def check_outputs(inputs: Iterable[Path], **outputs: Path | Sequence[Path] | None) -> None:
     """Raise InputError for an output, by its option's name, that would replace a file that is read, or be
-    replaced by another option's. Devices and pipes replace nothing, but standard output has room for one.
+    replaced by another option's. Devices and pipes replace nothing; standard output has room for one.
     """
     read = [path for path in inputs if os.path.isfile(path)]  # no shipped scene's name, however long
     written = [

@@ -1,7 +1,6 @@
 """Tables of a run of the suite for a paper, beside the published codes: CSV, LaTeX, Markdown, by the suffix.
 
-The published codes' results are those of `reports/results/cross_code.json.gz`, in the version of the suite
-that the file names; ours are in it too.
+The published codes' results are those of `reports/results/cross_code.json.gz`; ours are in it too.
 """
 
 from __future__ import annotations

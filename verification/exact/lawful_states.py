@@ -1,8 +1,7 @@
 """Lawful states by brute force or integer programming: over all contact sets, without a contact solver.
 
 A contact set S is lawful when the pressure that solves the linear equations on it, with tau acting on S and
-nowhere else, is positive on S and leaves no penetration outside. Slopes are neglected, and bodies are
-half-spaces. With tau = 0 there is
+nowhere else, is positive on S and leaves no penetration outside; slopes are neglected. With tau = 0 there is
 exactly one (`positive_definite`); with tau there may be none, one or several.
 """
 

@@ -22,11 +22,9 @@ _SHOWN = 40  # characters of the name of a target in that of its temporary file
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary path beside `path`, of its suffix, to take its place when the block ends well.
 
-    The file appears in one step; after an error the old file, if any, is still there. What is no regular
-    file, a device or a pipe, is never replaced: the finished file is copied to it. Nor is a link replaced,
-    but the file that it leads to.
-    A new file has the mode that the umask leaves, another keeps its own.
-    Raises OSError where the directory cannot be written to, or nobody reads the pipe.
+    The file appears in one step, with the mode that the umask leaves, or its old one. A device or a pipe is
+    not replaced: the finished file is copied to it; of a link, the file that it leads to is replaced. Raises
+    OSError where the directory cannot be written to, or nobody reads the pipe.
     """
     if is_stream(path):
         with tempfile.TemporaryDirectory() as folder:

@@ -7,7 +7,6 @@ from importlib.resources import as_file, files
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from appendix_a.fem3d.coefficients import LABELS, Coefficients3D, coefficients, corrected
 from appendix_a.fem3d.leading_order import first_order
@@ -15,9 +14,9 @@ from appendix_a.fem3d.patch import normal_coefficient, tilted_plane
 from appendix_a.fem3d.surface import X, Y, flat_sample, sample
 from appendix_a.fem3d.table import Series, Table3D
 from appendix_a.fem3d.wavy import Kind, Waviness
+from refimpl.grid import Array
 from verification.cases import Measured, case
 
-Array = NDArray[np.float64]
 NU, WAVELENGTH, SLOPE = 0.3, 20.0, 10.0
 FLANK = 0.25
 LEVELS = (1, 2, 3)

@@ -1,8 +1,7 @@
 """Two wavy bodies in sliding contact, plane strain: the model's numbers beside those of finite elements.
 
-The model is `refimpl.solve` on periodic surfaces that are constant along y, which is plane strain; the
-finite elements are `appendix_a.contact_fem`, with the true wavy boundaries and the contact's deformed
-geometry.  Both are linear elastic.  What remains between them once both are refined is the model-form error.
+`refimpl.solve` on periodic surfaces that are constant along y, and `appendix_a.contact_fem` with the true
+boundaries and the deformed geometry. What remains once both are refined is the model-form error.
 """
 
 from __future__ import annotations

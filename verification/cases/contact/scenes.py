@@ -1,8 +1,7 @@
-"""Scenes for the reference cases: a gap between two half-spaces of given moduli, pressed by the solver under
-test.
+"""Scenes for the reference cases: a gap between two half-spaces of given moduli, pressed by the solver.
 
-Holds no case. The gap is the upper body's surface and the lower one is flat; without friction both are of one
-material, so that nothing couples; with friction the upper body is (nearly) rigid and the lower one soft.
+The gap is the upper body's surface; without friction both bodies are of one material, so that nothing
+couples; with friction the upper body is (nearly) rigid and the lower one soft.
 """
 
 from __future__ import annotations
@@ -10,14 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 import refimpl as rf
+from refimpl.grid import Array
 from verification.cases import Measured
 from verification.exact.sliding_plane import dundurs
 from verification.framework.rates import fit_order
 
-Array = NDArray[np.float64]
 Gap = Callable[[Array, Array], Array]
 
 SOFT = (1e9, 0.2)

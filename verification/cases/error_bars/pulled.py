@@ -31,10 +31,9 @@ def ball(R: float, a: float, lower: rf.Material, upper: rf.Material) -> tuple[rf
 def off(scene: rf.Scene, M: int, approach: float | None = None) -> dict[str, float]:
     """Return the errors over their bars of the approach, or of N and p_max at an approach (m).
 
-    Errors are 4/3 of differences from a finer grid, of an approach 8/7: that much the finer grid may be off
-    itself, where errors fall with the element only, or its power 3/2. (Errors of approaches fall with its
-    square: of eight balls on 32 and 48 elements, grids 4 times finer see 0.94 to 0.97 of what those 8 times
-    finer see.)
+    Errors are 4/3 of differences from a finer grid, of an approach 8/7: what the finer grid may be off
+    itself, where errors fall with the element, or its power 3/2. (Errors of approaches fall with its square:
+    of eight balls, grids 4 times finer see 0.94 to 0.97 of what those 8 times finer see.)
     """
     found, finer = (rf.solve(scene, grid=grid, approach=approach) for grid in (M, FINER * M))
     if not (found.converged and finer.converged):
