@@ -30,9 +30,9 @@ def case(
 ) -> Callable[[Function], Function]:
     """Declare the decorated function, which is returned unchanged, as a verification case.
 
-    `metric` is a value of `Metric`, `tier` one of `Tier`. Title, claim, source and reason of the tolerance stand
-    in the function's docstring (see `described`); `texts` replaces them by name. Raises ValueError, at import,
-    for a second case of the same id and for whatever `Case` refuses.
+    `metric` is a value of `Metric`, `tier` one of `Tier`. Title, claim, source and reason of the tolerance
+    stand in the function's docstring (see `described`); `texts` replaces them by name. Raises ValueError, at
+    import, for a second case of the same id and for whatever `Case` refuses.
     """
 
     def declare(function: Function) -> Function:
