@@ -5,14 +5,13 @@ The published codes' results are those of `reports/results/cross_code.json.gz`; 
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from verification.output.provenance import ROOT
+from verification.output.text_table import csv_text, markdown_row
 
 if TYPE_CHECKING:
     from verification.framework.case import Result
@@ -64,15 +63,12 @@ def text_of(suffix: str, entries: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _csv(entries: Sequence[Mapping[str, Any]]) -> str:
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    rows: list[Sequence[object]] = [COLUMNS]
     for entry in entries:
         head = [entry["name"], entry.get("version"), entry.get("checksum"), entry["suite"]]
         for row in entry["results"]:
-            numbers = [row["status"], row["error"], row["tolerance"], row.get("metric")]
-            writer.writerow([*head, row["id"], *numbers])
-    return buffer.getvalue()
+            rows.append([*head, row["id"], row["status"], row["error"], row["tolerance"], row.get("metric")])
+    return csv_text(rows)
 
 
 def overview(entries: Sequence[Mapping[str, Any]]) -> tuple[Sequence[str], Rows]:
@@ -106,8 +102,7 @@ def _verdict(row: Mapping[str, Any] | None) -> str:
 
 
 def _markdown(head: Sequence[str], rows: Rows) -> str:
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join(f"| {' | '.join(c.replace('|', chr(92) + '|') for c in line)} |" for line in lines)
+    return "\n".join(map(markdown_row, [head, ["---"] * len(head), *rows]))
 
 
 def _latex(head: Sequence[str], rows: Rows) -> str:
