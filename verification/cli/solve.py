@@ -21,7 +21,6 @@ from verification.cli.options import (
 )
 from verification.cli.output import (
     PICTURES,
-    StatusLine,
     check_outputs,
     check_suffix,
     emit,
@@ -30,7 +29,7 @@ from verification.cli.output import (
     refusal,
 )
 from verification.cli.solve_table import document, not_usable, show_finished, table
-from verification.output.files import is_stream
+from verification.output.files import StatusLine, is_stream
 from verification.output.text_table import wrapped
 
 if TYPE_CHECKING:
