@@ -82,9 +82,8 @@ EXPLAINED = ("rms slope", "ψ(0.5 µm), Eq. (12)")
 """Quantities whose printed number an erratum explains."""
 
 
-def _worst(numbers: Sequence[Number], count: int = 3) -> list[Number]:
-    """Return the number of the largest ratio, or reciprocal ratio, to the print of each of the worst
-    quantities, of those beyond u."""
+def _worst(numbers: Sequence[Number]) -> list[Number]:
+    """Return the number of the largest ratio, or its reciprocal, of each of the three worst quantities."""
 
     def distance(n: Number) -> float:
         return abs(math.log(n.ratio))
@@ -94,7 +93,7 @@ def _worst(numbers: Sequence[Number], count: int = 3) -> list[Number]:
         for name, group in by_quantity(numbers).items()
         if name not in EXPLAINED
     ]
-    return sorted((max(group, key=distance) for group in beyond if group), key=distance, reverse=True)[:count]
+    return sorted((max(group, key=distance) for group in beyond if group), key=distance, reverse=True)[:3]
 
 
 def _hertz(case: Case) -> str:

@@ -76,8 +76,8 @@ def unseen_faults(results: Iterable[Result]) -> list[str]:
     return [fault.value for fault in Fault if fault not in seen]
 
 
-def likely_faults(results: Iterable[Result], most: int = 4) -> list[str]:
-    """Return the first faults by the share of the naming cases that fail, then by their number.
+def likely_faults(results: Iterable[Result]) -> list[str]:
+    """Return the first four faults by the share of the naming cases that fail, then by their number.
 
     A fault fails wherever it is named, so a case that names it and passes speaks against it.
     """
@@ -90,7 +90,7 @@ def likely_faults(results: Iterable[Result], most: int = 4) -> list[str]:
         named = [status[check.id] for check in suite() if fault in check.catches and check.id in status]
         if failed := named.count("fail"):
             ranked.append((failed / len(named), failed, f"{fault} ({failed} of {len(named)})"))
-    return [words for *_, words in sorted(ranked, key=lambda each: each[:2], reverse=True)[:most]]
+    return [words for *_, words in sorted(ranked, key=lambda each: each[:2], reverse=True)[:4]]
 
 
 def document(judged: Judged, name: str, stated: Mapping[str, Any]) -> dict[str, Any]:

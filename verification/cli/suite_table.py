@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from verification.output.provenance import ROOT
@@ -38,13 +37,13 @@ def run_entry(identity: Mapping[str, Any], suite: str, results: Iterable[Result]
     return dict(identity) | {"suite": suite, "counts": counts, "results": summarised(found)}
 
 
-def published(path: Path = PUBLISHED) -> list[dict[str, Any]]:
+def published() -> list[dict[str, Any]]:
     """Return the published codes' entries, without set-ups wrong on purpose; none without the file."""
     from verification.output.result_files import read_result
 
-    if not path.is_file():
+    if not PUBLISHED.is_file():
         return []
-    document: Any = read_result(path)
+    document: Any = read_result(PUBLISHED)
     suite = document["suite"]["version"]
     metrics = {case["id"]: case["metric"] for case in document["cases"]}
     entries = [e for e in document["entrants"] if e["installed"] and e["role"] != "trap"]

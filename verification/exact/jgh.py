@@ -61,19 +61,19 @@ def _displacement(symbol: Array, p: Array) -> Array:
     return np.asarray(idctn(symbol * dctn(p)))
 
 
-def relax(load_ratio: float, n: int, *, tolerance: float = 1e-9, limit: int = 4000) -> Array:
+def relax(load_ratio: float, n: int) -> Array:
     """Return p/p* ``(n, n)`` on the quarter cell 0 < x, y < lambda/2, of mean ``load_ratio``.
 
     Conjugate gradients on the contact set, exact symbol 2/(E* q) by cosine transform. Converged when the mean
-    of p (w - min w) is below ``tolerance`` times p* Delta; raises RuntimeError otherwise.
+    of p (w - min w) is below 1e-9 of p* Delta times that; raises RuntimeError otherwise.
     """
     shape, symbol = _cell(n)
     p = np.full((n, n), load_ratio)
     direction, previous, conjugate = np.zeros_like(p), 1.0, 0.0
-    for _ in range(limit):
+    for _ in range(4000):
         touching = p > 0
         w = _displacement(symbol, p) + shape
-        if float(np.mean(p * (w - w.min()))) < tolerance * load_ratio:
+        if float(np.mean(p * (w - w.min()))) < 1e-9 * load_ratio:
             return p
         w = w - w[touching].mean()
         norm = float(np.sum(w[touching] ** 2))

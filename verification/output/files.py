@@ -141,7 +141,7 @@ class StatusLine:
 
 
 class Progress(StatusLine):
-    """The same with a count of steps, every one of which is shown."""
+    """Status line with a count of steps, every one of which is shown."""
 
     pause = 0.0
 

@@ -243,15 +243,15 @@ def _on(problem: ContactProblem, matrix: Array, contact: Mask) -> tuple[Array, f
     return f, float(solved[-1]) * length
 
 
-def eliminated(problem: ContactProblem, limit: int = 100) -> Array:
+def eliminated(problem: ContactProblem) -> Array:
     """Return the solution (Pa) by block principal pivoting, for small problems without tau.
 
     From all elements in contact, or all that overlap, drops those in tension and adds those that penetrate.
-    Raises RuntimeError where that does not end within ``limit`` rounds.
+    Raises RuntimeError where that does not end within 100 rounds.
     """
     matrix, gap, prescribed = _flexibility(problem), problem.gap.ravel(), problem.approach_from_touch
     contact = gap < (np.inf if prescribed is None else prescribed)
-    for _ in range(limit):
+    for _ in range(100):
         f, approach = _on(problem, matrix, contact)
         v = matrix @ f + gap
         slack = 1e-13 * max(float(np.abs(v).max()), abs(approach))
@@ -260,4 +260,4 @@ def eliminated(problem: ContactProblem, limit: int = 100) -> Array:
             return f.reshape(problem.gap.shape)
         # tension first: a set that is too large only loses elements, one by its worst penetration gains
         contact = contact & ~wrong_in if wrong_in.any() else contact | wrong_out
-    raise RuntimeError(f"no contact set found in {limit} rounds")
+    raise RuntimeError("no contact set found in 100 rounds")

@@ -112,11 +112,11 @@ def ridge(slope: float, position: float = FLANK) -> Waviness:
     return Waviness(slope, WAVELENGTH, position)
 
 
-def odd_part(surface: Waviness, nu: float, level: int = 2) -> Array:
-    """Return half the difference (10,) between a slope and its opposite, over flat, less 1/R^2."""
+def odd_part(surface: Waviness, nu: float) -> Array:
+    """Return half the difference (10,) between a slope and its opposite, over flat, less 1/R^2; level 2."""
     opposite = Waviness(-surface.slope_deg, surface.wavelength, surface.position, surface.kind)
     near, far = (
-        0.5 * (sample(surface, nu, radius, level).down - sample(opposite, nu, radius, level).down)
+        0.5 * (sample(surface, nu, radius, 2).down - sample(opposite, nu, radius, 2).down)
         for radius in (30.0, 60.0)
     )
     return (far + (far - near) / 3) / normal_coefficient(X, Y, nu)
