@@ -20,6 +20,7 @@ import traceback
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -204,6 +205,10 @@ def _marked(mark: str) -> set[psutil.Process]:
     return found
 
 
+def _gone(processes: Iterable[psutil.Process]) -> bool:
+    return not any(map(_alive, processes))
+
+
 def reap(leader: subprocess.Popen[bytes]) -> int:
     """Kill the group of a process, and return its exit status: then its number may be anybody's."""
     if leader.returncode is None:
@@ -237,5 +242,5 @@ def end_all(leader: subprocess.Popen[bytes], mark: str) -> list[str]:
                 if not in_session(each.pid, leader.pid):
                     found.setdefault(each.pid, f"{' '.join(each.cmdline())[:80]} (process {each.pid}): ended")
                 each.kill()
-        wait_until(lambda left=left: not any(map(_alive, left)), PATIENCE)
+        wait_until(partial(_gone, left), PATIENCE)
     return [found[pid] for pid in sorted(found)]
