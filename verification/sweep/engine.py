@@ -105,7 +105,7 @@ def sweep(
     ``workers`` processes, or with 0 this process, which should have one BLAS thread; ``scheduler`` is the
     address of a dask.distributed cluster. A run that raises is in ``failures``, and is tried again by the
     next sweep. Raises InputError for a store or a scheduler that cannot serve, WorkersLost when a worker
-    process was killed or the scheduler is lost.
+    process was killed or the scheduler is lost; a cluster that lost its last worker is waited for.
     """
     started = time.perf_counter()
     # Points without roughness are the same run in every realisation, and are solved once.
