@@ -69,10 +69,10 @@ class Judged:
     errata: Sequence[Mapping[str, Any]]
 
 
-def entries(kind: str) -> list[dict[str, Any]]:
-    """Return the entries of `paper.toml` of a kind, "claim" or "part", in the paper's order."""
+def entries(kind: str) -> list[Any]:
+    """Return the entries of `paper.toml` of a kind, "claim", "part" or "conversion", in the paper's order."""
     text = resources.files("reports").joinpath("paper.toml").read_text(encoding="utf-8")
-    found: list[dict[str, Any]] = tomllib.loads(text)[kind]
+    found: list[Any] = tomllib.loads(text)[kind]
     return found
 
 
@@ -88,8 +88,7 @@ def parts() -> list[Part]:
 
 def of_the_conversion() -> frozenset[str]:
     """Return the errata that may be faults of the text's conversion from print, by equation."""
-    text = resources.files("reports").joinpath("paper.toml").read_text(encoding="utf-8")
-    return frozenset(tomllib.loads(text)["conversion"])
+    return frozenset(entries("conversion"))
 
 
 def longest(cases: Iterable[Case]) -> list[Case]:

@@ -45,13 +45,13 @@ def gathered(run: object, committed: Mapping[str, Mapping[str, Any]]) -> Evidenc
     runs = {name: check(file) for name, file in committed.items() if file.get("format") == FORMAT}
     own = {name: file for name, file in runs.items() if solver(file) is None}
     newest = sorted(own.items(), key=lambda item: str(item[1]["provenance"]["date"]), reverse=True)
-    cases = {case["id"]: _case(case, None) for case in checked["cases"]}
+    cases = {case["id"]: {**case, "origin": None} for case in checked["cases"]}
     errata = {erratum["equation"]: erratum for erratum in checked["errata"]}
     for judged in (True, False):
         for name, file in newest:
             for case in file["cases"]:
                 if (case["status"] in ("pass", "fail")) == judged:
-                    cases.setdefault(case["id"], _case(case, _origin(name, file)))
+                    cases.setdefault(case["id"], {**case, "origin": _origin(name, file)})
     for _, file in newest:
         for erratum in file["errata"]:
             errata.setdefault(erratum["equation"], erratum)
@@ -59,18 +59,9 @@ def gathered(run: object, committed: Mapping[str, Mapping[str, Any]]) -> Evidenc
     return Evidence(checked, tuple(cases.values()), tuple(errata.values()), studies, committed)
 
 
-def _case(case: Case, origin: dict[str, Any] | None) -> Case:
-    return {**case, "origin": origin}
-
-
 def _origin(name: str, file: Mapping[str, Any]) -> dict[str, Any]:
-    provenance = file["provenance"]
-    return {
-        "file": f"{name}.json",
-        "date": provenance["date"],
-        "commit": provenance["commit"],
-        "command": provenance["command"],
-    }
+    made = {key: file["provenance"][key] for key in ("date", "commit", "command")}
+    return {"file": f"{name}.json", **made}
 
 
 @dataclass(frozen=True)
@@ -112,19 +103,15 @@ def solver(results: Mapping[str, Any]) -> str | None:
 
 def rerun(command: str, case_id: str) -> str:
     """Return the command that runs one case with the solver, its abilities and limits as in ``command``."""
-    words = iter(shlex.split(command)[1:])
-    return shlex.join(["rough-friction", *_kept(words), "--only", case_id])
-
-
-def _kept(words: Iterator[str]) -> Iterator[str]:
+    words, kept = iter(shlex.split(command)[1:]), []
     for word in words:
         option, equals, _ = word.partition("=")
         # argparse takes a beginning that is no other option's, so whatever begins one of these is meant by it
-        if len(option) > 2 and any(name.startswith(option) for name in ELSEWHERE):
-            if not equals:
-                next(words, None)
-        else:
-            yield word
+        if len(option) <= 2 or not any(name.startswith(option) for name in ELSEWHERE):
+            kept.append(word)
+        elif not equals:
+            next(words, None)
+    return shlex.join(["rough-friction", *kept, "--only", case_id])
 
 
 NOT_KNOWN = "n/a"
@@ -142,14 +129,10 @@ def revisions_of(evidence: Evidence) -> list[tuple[str, str, str]]:
 def newest(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
     """Return the provenance of a study's document or newest run; else the document, if it is dated."""
     listed = [entry for value in document.values() if isinstance(value, list) for entry in value]
-    records = [
-        item["provenance"]
-        for item in (document, *listed)
-        if isinstance(item, Mapping) and "provenance" in item
-    ]
-    return max(
-        records, key=lambda record: str(record["date"]), default=document if "date" in document else None
-    )
+    items = [item for item in (document, *listed) if isinstance(item, Mapping)]
+    records = [item["provenance"] for item in items if "provenance" in item]
+    otherwise = document if "date" in document else None
+    return max(records, key=lambda record: str(record["date"]), default=otherwise)
 
 
 def _made(provenance: Mapping[str, Any] | None) -> tuple[str, str]:

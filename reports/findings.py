@@ -88,8 +88,6 @@ def _step_by_step(data: Any, steps: list[str]) -> Any:
 
 def _readings(data: Mapping[str, Any], *, below: bool) -> int | None:
     """Return the number of readings of "less than 2%", or share that holds (per cent)."""
-    values = [
-        v for name, row in data.items() if name.endswith(READINGS) and isinstance(row, list) for v in row
-    ]
-    sizes = [v for v in values if isinstance(v, int | float)]
+    rows = [row for name, row in data.items() if name.endswith(READINGS) and isinstance(row, list)]
+    sizes = [v for row in rows for v in row if isinstance(v, int | float)]
     return sum(abs(v) < LIMIT for v in sizes) if below else len(sizes)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -34,68 +33,39 @@ HERTZ = {
 }
 
 
-@dataclass(frozen=True)
-class FrontPage:
-    """Contents of the first page; tables are rows of texts."""
-
-    verdicts: Mapping[str, Sequence[Judged]]
-    judged: int
-    """Statements with a verdict: not those that are definitions, drawings or true by construction."""
-    printed: tuple[int, int]
-    """Printed numbers that agree within u, and all that have a computed counterpart."""
-    all_of_table3: tuple[int, int]
-    table3: Sequence[Number]
-    unexplained: Sequence[Number]
-    """Numbers of Table 3's fine mesh beyond u."""
-    by_inputs: tuple[int, int]
-    """Printed numbers that agree by the rounding of printed inputs alone, and those of them by R alone."""
-    worst: Sequence[Number]
-    """The number of the largest ratio, or reciprocal ratio, to the printed one of each of the three worst
-    quantities, of those beyond u; without quantities that an erratum explains."""
-    hertz: Sequence[str]
-    quantities: Sequence[tuple[str, int, str, str, int]]
-    conversion: int
-    """Errata that may be faults of the text's conversion."""
-    trust: Sequence[str]
-    experiments: Sequence[str]
-    """Sentences on predictions beside measurements; none where no result file has them."""
-
-    @property
-    def table3_rows(self) -> Mapping[str, Sequence[Number]]:
-        """Table 3 on the fine mesh by quantity, the roughnesses in order."""
-        rows: dict[str, list[Number]] = {}
-        for n in self.table3:
-            name = n.quantity.removesuffix(", Table 3")
-            rows.setdefault(f"{name} ({n.unit})" if n.unit else name, []).append(n)
-        return rows
-
-    @property
-    def roughness(self) -> Sequence[str]:
-        """The columns by the half-space's roughness."""
-        return list(dict.fromkeys(n.label.partition(",")[0] for n in self.table3))
+def front_page(evidence: Evidence, claims: Sequence[Judged], numbers: Sequence[Number]) -> dict[str, Any]:
+    """Return the page's contents by the names that the template has; what is missing leaves its rows out."""
+    table3, studies = fine(numbers), evidence.studies
+    of_extremes = [sentence(studies["extremes"])] if "extremes" in studies else []
+    return {
+        "verdicts": {v: [c for c in claims if c.verdict == v] for v in VERDICTS},
+        "judged": sum(c.verdict not in UNJUDGED for c in claims),
+        "printed": _agreeing(numbers),
+        "all_of_table3": _agreeing([n for n in numbers if n.part == "Table 3"]),
+        "table3": table3,
+        "table3_rows": _by_label(table3),
+        "roughness": list(dict.fromkeys(n.label.partition(",")[0] for n in table3)),
+        "unexplained": [n for n in table3 if not n.within],
+        "by_inputs": _by_inputs(numbers),
+        "worst": _worst(numbers),
+        "hertz": [said for said in map(_hertz, evidence.cases) if said],
+        "quantities": [_quantity(name, group) for name, group in by_quantity(numbers).items()],
+        "conversion": sum(erratum["equation"] in of_the_conversion() for erratum in evidence.errata),
+        "trust": [*_coverage(studies), *of_extremes],
+        "experiments": sentences(studies["experiments"]) if "experiments" in studies else [],
+    }
 
 
-def front_page(evidence: Evidence, claims: Sequence[Judged], numbers: Sequence[Number]) -> FrontPage:
-    """Collect the page from the evidence; what is missing leaves its rows out."""
-    table3 = fine(numbers)
-    return FrontPage(
-        verdicts={v: [c for c in claims if c.verdict == v] for v in VERDICTS},
-        judged=sum(c.verdict not in UNJUDGED for c in claims),
-        printed=_agreeing(numbers),
-        all_of_table3=_agreeing([n for n in numbers if n.part == "Table 3"]),
-        table3=table3,
-        unexplained=[n for n in table3 if not n.within],
-        by_inputs=_by_inputs(numbers),
-        worst=_worst(numbers),
-        hertz=[said for said in map(_hertz, evidence.cases) if said],
-        quantities=[_quantity(name, group) for name, group in by_quantity(numbers).items()],
-        conversion=sum(erratum["equation"] in of_the_conversion() for erratum in evidence.errata),
-        trust=[*_coverage(evidence.studies), *_trust(evidence.studies)],
-        experiments=sentences(evidence.studies["experiments"]) if "experiments" in evidence.studies else [],
-    )
+def _by_label(table3: Sequence[Number]) -> dict[str, list[Number]]:
+    rows: dict[str, list[Number]] = {}
+    for n in table3:
+        name = n.quantity.removesuffix(", Table 3")
+        rows.setdefault(f"{name} ({n.unit})" if n.unit else name, []).append(n)
+    return rows
 
 
 def _agreeing(numbers: Sequence[Number]) -> tuple[int, int]:
+    """Return how many printed numbers agree within u, and how many have a computed counterpart."""
     within = printed(numbers).values()
     return sum(within), len(within)
 
@@ -112,8 +82,8 @@ EXPLAINED = ("rms slope", "ψ(0.5 µm), Eq. (12)")
 """Quantities whose printed number an erratum explains."""
 
 
-def _worst(numbers: Sequence[Number], count: int = 3) -> list[Number]:
-    """Return the worst of the quantities with a number beyond u, by its largest ratio to the print."""
+def _worst(numbers: Sequence[Number]) -> list[Number]:
+    """Return the number of the largest ratio, or its reciprocal, of each of the three worst quantities."""
 
     def distance(n: Number) -> float:
         return abs(math.log(n.ratio))
@@ -123,7 +93,7 @@ def _worst(numbers: Sequence[Number], count: int = 3) -> list[Number]:
         for name, group in by_quantity(numbers).items()
         if name not in EXPLAINED
     ]
-    return sorted((max(group, key=distance) for group in beyond if group), key=distance, reverse=True)[:count]
+    return sorted((max(group, key=distance) for group in beyond if group), key=distance, reverse=True)[:3]
 
 
 def _hertz(case: Case) -> str:
@@ -154,9 +124,8 @@ MISSED = 0.01
 
 def _coverage(studies: Mapping[str, Any]) -> list[str]:
     """Return the coverage of error bars over all classes of random scenes, and the classes that bars miss."""
-    table = [
-        row for row in studies.get("coverage_corrected", {}).get("table", ()) if row["number"] in COVERED
-    ]
+    table = studies.get("coverage_corrected", {}).get("table", ())
+    table = [row for row in table if row["number"] in COVERED]
     said = [
         f"{COVERED[row['number']]} {percent(row['held'])}{_of_bounded(row)}, {percent(row['usable'])}, "
         f"{number(row['median_bar_over_error'], 2)}"
@@ -190,13 +159,9 @@ def _of_bounded(row: Mapping[str, Any]) -> str:
     return f" ({percent(covering / bounded)} of the bounded)" if 0 < bounded < 1 else ""
 
 
-def _trust(studies: Mapping[str, Any]) -> list[str]:
-    """Return one sentence per study of the verification itself."""
-    return [sentence(studies["extremes"])] if "extremes" in studies else []
-
-
 WIDEST = 2.0  # ratios beyond it, or below its reciprocal, are written at the border
 TICKS = (0.5, 0.7, 1.0, 1.4, 2.0)
+LOOK = {True: (COLOURS[0], "o", "within u"), False: (COLOURS[1], "D", "beyond u")}
 
 
 def _draw(canvas: Canvas, data: Data) -> None:
@@ -209,16 +174,13 @@ def _draw(canvas: Canvas, data: Data) -> None:
     for k, quantity in enumerate(data["quantity"]):
         y = quantities.index(quantity) + 0.55 * ((shift[quantity] + 0.5) / count[quantity] - 0.5)
         shift[quantity] += 1
-        inside = abs(ratio[k] - 1) <= half[k]
-        style: dict[str, Any] = {
-            "color": COLOURS[0] if inside else COLOURS[1],
-            "marker": "o" if inside else "D",
-        }
+        colour, marker, _ = LOOK[bool(abs(ratio[k] - 1) <= half[k])]
         if abs(math.log(ratio[k])) > math.log(WIDEST):
             where: dict[str, Any] = {"xycoords": ("axes fraction", "data"), "ha": "right", "va": "center"}
             axes.annotate(f"{ratio[k]:.3g} →", (0.99, y), color=COLOURS[1], fontsize=9, **where)
         else:
-            axes.errorbar(ratio[k], y, xerr=min(half[k], 0.99 * ratio[k]), capsize=2, markersize=4, **style)
+            bar: dict[str, Any] = {"xerr": min(half[k], 0.99 * ratio[k]), "capsize": 2, "markersize": 4}
+            axes.errorbar(ratio[k], y, color=colour, marker=marker, **bar)
     axes.axvline(1.0, color=INK, linestyle="--", linewidth=1)
     axes.set_xscale("log")
     axes.set_xlim(0.9 / WIDEST, 1.05 * WIDEST)
@@ -226,8 +188,8 @@ def _draw(canvas: Canvas, data: Data) -> None:
     axes.set_yticks(range(len(quantities)), quantities)
     axes.set_ylim(len(quantities) - 0.5, -0.5)
     axes.set_xlabel("computed / printed")
-    for inside, label in ((True, "within u"), (False, "beyond u")):
-        axes.plot([], [], "o" if inside else "D", color=COLOURS[0] if inside else COLOURS[1], label=label)
+    for colour, marker, label in LOOK.values():
+        axes.plot([], [], marker, color=colour, label=label)
     canvas.legend(*axes.get_legend_handles_labels(), loc="outside upper right", ncols=2)
 
 

@@ -32,8 +32,8 @@ def _number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _size(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and value >= 0
+def _size(value: Any) -> bool:
+    return _number(value) and bool(value >= 0)
 
 
 def _texts(value: object) -> bool:
@@ -60,9 +60,8 @@ def _command(value: object) -> bool:
 
 
 def _labels(value: object) -> bool:
-    return isinstance(value, Mapping) and all(
-        item is None or _text(item) or _number(item) for item in value.values()
-    )
+    kinds = _or_none(lambda item: _text(item) or _number(item))
+    return isinstance(value, Mapping) and all(map(kinds, value.values()))
 
 
 FILE: Mapping[str, Kind] = {
@@ -265,12 +264,8 @@ def compared(old: object, new: object) -> list[Change]:
     """
     before = {case["id"]: case for case in check(old)["cases"]}
     after = {case["id"]: case for case in check(new)["cases"]}
-    changes = []
-    for id in sorted(before.keys() | after.keys()):
-        kind = _kind(before.get(id), after.get(id))
-        if kind is not None:
-            changes.append(Change(kind, id, before.get(id), after.get(id)))
-    return changes
+    pairs = {id: (before.get(id), after.get(id)) for id in sorted(before.keys() | after.keys())}
+    return [Change(kind, id, *pair) for id, pair in pairs.items() if (kind := _kind(*pair)) is not None]
 
 
 def _kind(old: Case | None, new: Case | None) -> str | None:

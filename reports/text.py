@@ -110,6 +110,4 @@ def cell(value: object) -> str:
     """
     if isinstance(value, bool):
         return "yes" if value else "no"
-    if value is None:
-        return "n/a"
-    return number(value) if isinstance(value, float) else str(value)
+    return number(value) if value is None or isinstance(value, float) else str(value)

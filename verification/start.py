@@ -11,9 +11,8 @@ from collections.abc import Sequence
 def run(arguments: Sequence[str] | None = None) -> int:
     """Import the command line, which takes a while, and run it; returns the exit status.
 
-    Until `verification.cli.main` takes over, an interrupt ends the process as the system does. Where it is
-    ignored, as in a shell's background job, it stays so. Messages to a closed standard error are lost.
-    Pictures go to files, whatever ``MPLBACKEND`` says.
+    Until `verification.cli.main` takes over, an interrupt ends the process as the system does, unless
+    ignored. Messages to a closed standard error are lost. Pictures go to files, whatever ``MPLBACKEND`` says.
     """
     os.environ["MPLBACKEND"] = "agg"
     if sys.stderr is None:  # `2>&-`; a file opened later must not become descriptor 2 of child processes

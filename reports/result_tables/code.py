@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from reports.evidence import Evidence
@@ -152,12 +152,10 @@ def checks(documents: Mapping[str, Any], evidence: Evidence) -> str:
     for name, run in documents.items():
         if run.get("format") == FORMAT:
             made = run["provenance"]
-            selected = (
-                ", ".join(f"`{pattern}`" for pattern in run["only"]) or f"all of the {run['tier']} tier"
-            )
-            counts = _counts(run["cases"])
+            selected = ", ".join(f"`{pattern}`" for pattern in run["only"])
+            selected = selected or f"all of the {run['tier']} tier"
             commit = (made["commit"] or "n/a")[:12]
-            rows.append((link(name), selected, *counts, made["date"][:10], f"`{commit}`"))
+            rows.append((link(name), selected, *_counts(run["cases"]), made["date"][:10], f"`{commit}`"))
     counted = zip(_counts(evidence.cases), COUNTED, strict=True)
     listed = ", ".join(f"{count} {status}" for count, status in counted)
     bad = [f"`{case['id']}` ({case['status']})" for case in evidence.cases if case["status"] != "pass"]
@@ -173,41 +171,30 @@ def _counts(cases: Iterable[Case]) -> list[int]:
 
 def studies(documents: Mapping[str, Any]) -> str:
     """Show the quality of the test suite: single numbers of the studies."""
-    rows = list(_searches(documents))
-    text = "How far the verification itself can be trusted, and what broad searches found."
-    return section("Studies", text, ("study", "result", "file"), rows)
-
-
-def _searches(documents: Mapping[str, Any]) -> Iterator[Row]:
     found, states = documents["extremes"]["counts"], documents["extremes"]["states"]
     least = min(row["digits"] for row in states if row["verdict"] == "right")
-    yield (
-        "extreme inputs",
+    verdicts = (
         f"{found['right']} right (to {least:.1f} digits at least), {found['detected failure']} detected "
-        f"failures, {found['unjudged']} unjudged, {found['wrong']} wrong, {found['crash']} crashes",
-        link("extremes"),
+        f"failures, {found['unjudged']} unjudged, {found['wrong']} wrong, {found['crash']} crashes"
     )
     invariants = documents["hypothesis"]
-    yield (
-        "random examples of invariants",
-        f"{invariants['examples']} tried, {invariants['counterexamples']} counter-examples",
-        link("hypothesis"),
-    )
+    tried = f"{invariants['examples']} tried, {invariants['counterexamples']} counter-examples"
+    rows = [
+        ("extreme inputs", verdicts, link("extremes")),
+        ("random examples of invariants", tried, link("hypothesis")),
+    ]
+    text = "How far the verification itself can be trusted, and what broad searches found."
+    return section("Studies", text, ("study", "result", "file"), rows)
 
 
 def codes(cross_code: Mapping[str, Any]) -> str:
     """Show solvers through the suite of checks for other solvers."""
     roles = {"ours": "this code", "peer": "published solver", "trap": "negative control"}
-    rows: list[Row] = [
-        (
-            entrant["name"],
-            roles[entrant["role"]],
-            *(entrant["counts"][status] for status in STATUSES),
-            link("cross_code"),
-        )
-        for entrant in cross_code["entrants"]
-    ]
+    columns: dict[str, Column] = {
+        "solver": "name",
+        "role": lambda entrant: roles[entrant["role"]],
+        **{status: f"{{counts[{status}]}}" for status in STATUSES},
+        "file": lambda entrant: link("cross_code"),
+    }
     text = "Unavailable: outside a solver's abilities. A negative control is set up wrongly on purpose."
-    return section(
-        "Solvers in the suite for other solvers", text, ("solver", "role", *STATUSES, "file"), rows
-    )
+    return listing("Solvers in the suite for other solvers", text, cross_code["entrants"], columns)

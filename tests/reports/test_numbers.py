@@ -133,7 +133,7 @@ def test_the_first_page_by_hand() -> None:
     ]
     errata = [{"equation": "A5"}, {"equation": "A1"}]
     evidence: Any = SimpleNamespace(cases=cases, studies=STUDIES, errata=errata)
-    found = front_page(evidence, [], NUMBERS)
+    found = SimpleNamespace(**front_page(evidence, [], NUMBERS))
     assert (found.unexplained, found.worst, found.conversion) == ([NUMBERS[0]], [NUMBERS[0]], 1)
     assert found.table3_rows == {"μ": NUMBERS[:1], "A (mm²)": NUMBERS[1:2]}
     assert found.roughness == ["1.680 µm", "smooth"]

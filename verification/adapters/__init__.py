@@ -1,8 +1,7 @@
-"""Published contact solvers under test: Tamaas, ContactMechanics, ASPHER and SlipPY.
+"""Published contact solvers under test: Tamaas, ContactMechanics, ASPHER and SlipPY, by their short names.
 
-Each is run by a short name, as in ``rough-friction verify --solver tamaas``. What each needs stands in
-docs/check-your-solver.md. An adapter sets the peer up as its own documentation recommends and changes only
-units and signs.
+An adapter sets the peer up as its documentation recommends, and changes only units and signs
+(docs/check-your-solver.md).
 """
 
 NAMES = ("tamaas", "contactmechanics", "aspher", "slippy")

@@ -1,9 +1,7 @@
 """ASPHER (Yastrebov 2026), by nested grids where the grid allows, with its exact FFT operator.
 
-Its default H2 operator approximates the influence coefficients to some 1e-6, beyond the required tolerances
-here, so the exact one takes its place ("modestly faster", its authors say, up to 2048 x 2048).
-
-Its extra builds from source: that takes a C++17 compiler, CMake, and Eigen (Debian's libeigen3-dev).
+Its default H2 operator approximates the influence coefficients to some 1e-6, beyond the tolerances here.
+Its extra builds from source, with a C++17 compiler, CMake, and Eigen (Debian's libeigen3-dev).
 """
 
 from __future__ import annotations

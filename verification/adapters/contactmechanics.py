@@ -1,12 +1,9 @@
 """ContactMechanics (Pastewka, Sanner and others), by its constrained conjugate gradients.
 
-Under a load: ``minimize_proxy`` (Polonsky and Keer). At an approach: ``dual_minimize_proxy`` (conjugate
-gradients without restarts), since the former, at an offset in free space, is apt to come to rest at a wrong
-state (and says so). A periodic half-space keeps its default ``stiffness_q0`` under a load: with zero there,
-version 1.8.3 calls the uniform pressure of its first iteration converged (`negative_controls`).
-
-A hardness is an argument of ``minimize_proxy``, as a force of an element. Where most of the contact is at it
-the solver turns to relaxation, and may not end.
+Under a load: ``minimize_proxy`` (Polonsky and Keer), which at an offset in free space is apt to come to rest
+at a wrong state (and says so); there ``dual_minimize_proxy``. A periodic half-space keeps its default
+``stiffness_q0`` under a load (`negative_controls`). A hardness is a force of an element: where most of the
+contact is at it the solver turns to relaxation, and may not end.
 """
 
 from __future__ import annotations

@@ -1,9 +1,6 @@
-"""Negative controls: two codes as an unwary user may set them up.
+"""Negative controls: two codes set up as an unwary user may, which report success on a wrong state.
 
-Both then report success on a wrong state, and the suite must not pass them.
-
-They stand in the cross-code table beside the right set-ups: what they fail is the suite's merit, not the
-peers' fault.
+What they fail in the cross-code table is the suite's merit, not the peers' fault.
 """
 
 from __future__ import annotations

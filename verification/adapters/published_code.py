@@ -84,11 +84,10 @@ class PublishedCode:
 def closure(problem: ContactProblem) -> float:
     """Return the mean gap under the pressure (m) that meets the tolerance, ``sum f (v - min v) / sum f``.
 
-    The relative gap is that over half the mean displacement under the pressure, ``depth``. No contact of load
-    P in a domain has a smaller one than the square punch that contains it, 0.87 P / (E* max(Lx, Ly)); at an
-    approach d it is d / 2 for a cone and more for blunter shapes. Periodic contact displaces half the
-    heights' deviation when light, a third when about to become full (peaks of three deviations), and less
-    under still higher loads: twice the energy that flattens the surface, over the load.
+    The relative gap is that over half the mean displacement under the pressure, ``depth``: at least that of
+    the square punch that contains the contact, 0.87 P / (E* max(Lx, Ly)); at an approach d at least d / 2.
+    Periodic, it is half the heights' deviation when light, a third near full contact, and less beyond: twice
+    the energy that flattens the surface, over the load.
     """
     if problem.load is not None:
         depth = 0.87 * problem.load / (problem.reduced_modulus * max(problem.lengths))

@@ -1,8 +1,7 @@
 """The cross-code table: ``python -m verification.adapters.table --json FILE``.
 
-Every installed peer and our own solvers go through the suite of `verification.solver_suite`. For each case:
-the verdict, the error, the seconds in the solver alone, and the worst residual recomputed from the pressures
-of all problems that the case posed.
+Every installed peer and our own solvers go through the suite: verdict, error, seconds in the solver alone,
+and the worst residual recomputed from the pressures of all problems of a case.
 """
 
 from __future__ import annotations

@@ -1,14 +1,10 @@
 """Tamaas (Frerot, Anciaux, Rey, Pham-Ba, Molinari 2020), by its Polonsky-Keer solver.
 
-Pressures that end at a hardness are solved by ``KatoSaturated``, a projected gradient whose step is a fixed
-length. It is posed in units of E*: with moduli in Pa Tamaas 2.9.0 stays at the uniform pressure that it
-starts from, and returns an error of 0. The error was 0 wherever we looked, so all steps are taken, and the
-solver cannot say whether they were enough: on a bed of pins whose other elements are a thousand times farther
-than the pins move (`verification.solver_suite.checks.hardness`), it comes to rest 0.2 H off.
-
-Free space takes two steps: ``registerNonPeriodic`` adds the zero-padded operator to the model, and
-``setIntegralOperator`` tells the solver to use it. Without the second, Tamaas 2.9.0 solves the periodic
-problem and says nothing; `verification.adapters.negative_controls` keeps that in view.
+A hardness is solved by ``KatoSaturated`` in units of E*: with moduli in Pa Tamaas 2.9.0 stays at the uniform
+pressure that it starts from. Its error was 0 wherever we looked, so all steps are taken; on a bed of pins
+(`verification.solver_suite.checks.hardness`) it comes to rest 0.2 H off. Free space takes two steps:
+``registerNonPeriodic`` adds the zero-padded operator, ``setIntegralOperator`` makes the solver use it.
+Without the second, the periodic problem is solved and nothing said (`negative_controls`).
 """
 
 from __future__ import annotations
@@ -30,9 +26,8 @@ _GAP_FORMULATION = 0.3
 def press(problem: ContactProblem, *, second_step: bool = True) -> PublishedAnswer:
     """Return the Polonsky-Keer pressures; the solver's error is the mean gap under them over std(heights).
 
-    Loads are mean pressures. A periodic approach is minus the mean gap, which the same solver takes as
-    constraint of its gap formulation. ``second_step=False`` gives the negative control. Raises `Unsupported`
-    for an approach in free space: Tamaas has none.
+    Loads are mean pressures; a periodic approach is minus the mean gap. ``second_step=False`` gives the
+    negative control. Raises `Unsupported` for an approach in free space: Tamaas has none.
     """
     tm = imported("tamaas")
     tm.set_log_level(tm.LogLevel.error)

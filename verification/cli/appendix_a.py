@@ -6,7 +6,7 @@ import argparse
 import json
 import math
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,7 @@ from typing import Any
 from verification.cli import appendix_tables, half_space
 from verification.cli.options import Options, Parsers, declare, number, numbers, option, subcommand
 from verification.cli.output import check_workers, emit, refusal
+from verification.output.files import Progress
 from verification.output.text_table import columns
 
 # A table is of a slope's square, so none of zero; half a period of positions is all, the rest is its mirror.
@@ -119,8 +120,10 @@ def fem(options: argparse.Namespace) -> int:
     """Print the displacements of a wavy boundary and of a flat one."""
     from appendix_a.fem.sinusoid import SOLVES, fem_json, sinusoid
 
-    with _by_option(), _progress(SOLVES, "finite elements") as tick:
-        found = sinusoid(*_wave(options), offsets=options.offsets, progress=tick)
+    with _by_option(), Progress(SOLVES) as line:
+        found = sinusoid(
+            *_wave(options), offsets=options.offsets, progress=lambda *_: line.tick("finite elements")
+        )
     document = fem_json(found)
     remark = f"discretisation error {document['discretisation_error']:.1g}"
     emit(document, options.json, _displacements(document, remark))
@@ -145,8 +148,12 @@ def coefficient_map(options: argparse.Namespace) -> int:
     with _by_option(**{field: (name, axes[name], "") for field, name in AXIS_OPTIONS.items()}):
         check_complete(*axes.values())
     pairs = len(axes["slopes-deg"]) * len(axes["wavelengths"])
-    with _by_option(), _progress(pairs, "slopes and wavelengths") as tick:
-        found = compute(*axes.values(), workers=options.jobs, progress=tick)
+    with _by_option(), Progress(pairs) as line:
+        found = compute(
+            *axes.values(),
+            workers=options.jobs,
+            progress=lambda *_: line.tick("slopes and wavelengths"),
+        )
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "map.json"
         found.write(path)
@@ -198,17 +205,6 @@ def _refuse_angles(options: argparse.Namespace) -> None:
     for theta in options.theta_deg:
         if abs(theta) > face + FACE_SLACK_DEG:
             raise refusal("--theta-deg", theta, f"angles within the faces at +-{face:g} degrees")
-
-
-@contextmanager
-def _progress(total: int, text: str) -> Iterator[Callable[..., None]]:
-    from verification.output.files import Progress
-
-    progress = Progress(total)
-    try:
-        yield lambda *_: progress.tick(text)
-    finally:
-        progress.close()
 
 
 @contextmanager

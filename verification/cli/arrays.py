@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from verification.cli.output import refusal
+from verification.output.text_table import csv_text
 
 if TYPE_CHECKING:
     from refimpl import Solution
@@ -70,12 +69,9 @@ def write_patches(solution: Solution, path: Path) -> None:
     from refimpl.solution.arrays import Patch
     from verification.output.files import write_text
 
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
     names = [field.name for field in fields(Patch)]
-    writer.writerow(f"{name} [{PATCH_UNITS[name]}]" if name in PATCH_UNITS else name for name in names)
-    writer.writerows(map(astuple, solution.patches()))
-    write_text(buffer.getvalue(), path)
+    head = [f"{name} [{PATCH_UNITS[name]}]" if name in PATCH_UNITS else name for name in names]
+    write_text(csv_text([head, *map(astuple, solution.patches())]), path)
 
 
 def write_vtk(solution: Solution, path: Path) -> None:

@@ -16,7 +16,8 @@ from verification.cli.options import (
     option,
     output_file,
 )
-from verification.cli.output import PICTURES, StatusLine, check_outputs, check_suffix, emit, files_of
+from verification.cli.output import PICTURES, check_outputs, check_suffix, emit, files_of
+from verification.output.files import StatusLine
 from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:

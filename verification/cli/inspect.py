@@ -16,7 +16,8 @@ from verification.cli.options import (
     output_file,
     three_numbers,
 )
-from verification.cli.output import PICTURES, StatusLine, check_outputs, check_suffix, emit, plain, refusal
+from verification.cli.output import PICTURES, check_outputs, check_suffix, emit, plain, refusal
+from verification.output.files import StatusLine
 from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from verification.cli.options import Options, option
 from verification.cli.output import check_outputs, emit
-from verification.output.text_table import columns
+from verification.output.text_table import columns, markdown_row
 
 if TYPE_CHECKING:
     from refimpl.scene.keys import Key
@@ -58,18 +58,13 @@ def page(text: str) -> str:
 
 def _markdown_table(name: str, keys: tuple[Key, ...]) -> str:
     places = also_in(name)
-    lines = [_row([title for title in HEAD if places or title != "also in"])]
+    lines = [markdown_row(title for title in HEAD if places or title != "also in")]
     lines.append("|---" * (len(HEAD) - (not places)) + "|")
     for key in keys:
         where = [places.get(key.name, "")] if places else []
         default = key.default if key.default in ("required", "-") else f"`{key.default}`"
-        cells = [f"`{key.name}`", key.unit, default, key.meaning, *where]
-        lines.append(_row(cells))
+        lines.append(markdown_row([f"`{key.name}`", key.unit, default, key.meaning, *where]))
     return "\n".join(lines)
-
-
-def _row(cells: list[str]) -> str:
-    return f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |"
 
 
 def also_in(name: str) -> dict[str, str]:

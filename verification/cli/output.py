@@ -1,4 +1,4 @@
-"""Common parts of the subcommands: where output goes, what is refused, progress on a terminal."""
+"""Common parts of the subcommands: where output goes, and what is refused."""
 
 from __future__ import annotations
 
@@ -7,12 +7,11 @@ import itertools
 import math
 import os
 import sys
-import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Self, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-from verification.output.files import is_stream, rewrite_line, to_json, write_text
+from verification.output.files import is_stream, to_json, write_text
 
 if TYPE_CHECKING:
     from refimpl import InputError, Scene
@@ -31,7 +30,7 @@ def refusal(field: str, value: object, allowed: str) -> InputError:
 
 def check_outputs(inputs: Iterable[Path], **outputs: Path | Sequence[Path] | None) -> None:
     """Raise InputError for an output, by its option's name, that would replace a file that is read, or be
-    replaced by another option's. Devices and pipes replace nothing, but standard output has room for one.
+    replaced by another option's. Devices and pipes replace nothing; standard output has room for one.
     """
     read = [path for path in inputs if os.path.isfile(path)]  # no shipped scene's name, however long
     written = [
@@ -129,31 +128,6 @@ def show(text: str) -> None:
         if closed.errno not in (errno.EPIPE, errno.EINVAL):
             raise
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-class StatusLine:
-    """Progress rewritten on one line of a terminal's stderr, which is cleared after the ``with`` block."""
-
-    def __init__(self) -> None:
-        self._shown, self._next = sys.stderr.isatty(), 0.0
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def show(self, text: str) -> None:
-        """Rewrite the line, at most ten times a second."""
-        if self._shown and time.monotonic() >= self._next:
-            self._next = time.monotonic() + 0.1
-            rewrite_line(text)
-
-    def close(self) -> None:
-        """Clear the line; the next text is shown at once."""
-        self._next = 0.0
-        if self._shown:
-            rewrite_line("")
 
 
 def judgement(result: Result) -> str:

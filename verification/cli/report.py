@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from verification.cli.options import Options, option
-from verification.cli.output import StatusLine, check_outputs, emit, refusal
+from verification.cli.output import check_outputs, emit, refusal
+from verification.output.files import StatusLine
 from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:

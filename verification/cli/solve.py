@@ -21,7 +21,6 @@ from verification.cli.options import (
 )
 from verification.cli.output import (
     PICTURES,
-    StatusLine,
     check_outputs,
     check_suffix,
     emit,
@@ -30,7 +29,7 @@ from verification.cli.output import (
     refusal,
 )
 from verification.cli.solve_table import document, not_usable, show_finished, table
-from verification.output.files import is_stream
+from verification.output.files import StatusLine, is_stream
 from verification.output.text_table import wrapped
 
 if TYPE_CHECKING:
@@ -71,6 +70,12 @@ PASSED_ON = ("grid", "accuracy", "quantity", "method", "approach", "tolerance")
 LIMITS = ("max_grid", "max_seconds", "max_memory")
 SWITCHES = ("coupled", "oblique", "tilted", "slope_correction", "plastic")
 
+
+def _switch(terms: str) -> Mapping[str, Any]:
+    text = f"include or exclude {terms} (default: the scene decides)"
+    return option(text, action=argparse.BooleanOptionalAction, default=None)
+
+
 ONE_OF = ("--grid", "--accuracy")
 OPTIONS: Options = {
     "scene": option("a scene's TOML file, or the name of a shipped scene", metavar="SCENE"),
@@ -95,18 +100,9 @@ OPTIONS: Options = {
     ),
     "--size": option("lengths of the domain (m), in place of the scene's", metavar="LXxLY", type=lengths),
     "--approach": option("prescribe the approach (m) instead of the load", metavar="D", type=float),
-    **{
-        f"--{name}": option(
-            f"include or exclude {terms} (default: the scene decides)",
-            action=argparse.BooleanOptionalAction,
-            default=None,
-        )
-        for name, terms in (
-            ("oblique", "every slope term"),
-            ("coupled", "normal-tangential coupling"),
-            ("tilted", "the slope change by shear"),
-        )
-    },
+    "--oblique": _switch("every slope term"),
+    "--coupled": _switch("normal-tangential coupling"),
+    "--tilted": _switch("the slope change by shear"),
     "--slope-correction": option("exact tractions of oblique facets in Eq. (7)", action="store_true"),
     "--plastic": option(
         "cap pressures at the hardness, or never (default: the scene's own, or where they reach it)",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from verification.cli.output import judgement
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     from verification.solver_suite.check import Check
 
 
-@dataclass(frozen=True)
+@dataclass
 class Judged:
-    """A run of the suite, perhaps an interrupted one.
+    """A run of the suite, filled while it runs, perhaps an interrupted one.
 
     checks : checks that were to be run
-    results : verdicts, those of the first checks where the run was interrupted
     only : patterns that chose the checks
     of_convergence : whether limits and orders were judged instead of the suite
+    results : verdicts, those of the first checks where the run was interrupted
     identity : version and checksum of the solver, as far as they are known
     left : processes that the solver left behind
     ended : the signal or Ctrl-C that interrupted the run, or None
@@ -31,13 +31,13 @@ class Judged:
     """
 
     checks: tuple[Check, ...]
-    results: tuple[Result, ...]
     only: tuple[str, ...]
     of_convergence: bool
-    identity: Mapping[str, str | None]
-    left: tuple[str, ...]
-    ended: BaseException | None
-    seconds: float
+    results: list[Result] = field(default_factory=list)
+    identity: dict[str, str | None] = field(default_factory=dict)
+    left: list[str] = field(default_factory=list)
+    ended: BaseException | None = None
+    seconds: float = 0.0
 
     @property
     def run(self) -> Run:
@@ -45,7 +45,7 @@ class Judged:
         from verification.framework.case import Tier
         from verification.framework.runner import Run
 
-        return Run(Tier.FULL, self.only, self.results, self.seconds)
+        return Run(Tier.FULL, self.only, tuple(self.results), self.seconds)
 
     @property
     def missing(self) -> list[str]:
@@ -63,7 +63,7 @@ class Judged:
         """Ids of convergence cases whose limit is right and whose order is low."""
         from verification.solver_suite import convergence
 
-        return convergence.slow(list(self.results)) if self.of_convergence else []
+        return convergence.slow(self.results) if self.of_convergence else []
 
 
 def unseen_faults(results: Iterable[Result]) -> list[str]:
@@ -76,8 +76,8 @@ def unseen_faults(results: Iterable[Result]) -> list[str]:
     return [fault.value for fault in Fault if fault not in seen]
 
 
-def likely_faults(results: Iterable[Result], most: int = 4) -> list[str]:
-    """Return the first faults by the share of the naming cases that fail, then by their number.
+def likely_faults(results: Iterable[Result]) -> list[str]:
+    """Return the first four faults by the share of the naming cases that fail, then by their number.
 
     A fault fails wherever it is named, so a case that names it and passes speaks against it.
     """
@@ -90,7 +90,7 @@ def likely_faults(results: Iterable[Result], most: int = 4) -> list[str]:
         named = [status[check.id] for check in suite() if fault in check.catches and check.id in status]
         if failed := named.count("fail"):
             ranked.append((failed / len(named), failed, f"{fault} ({failed} of {len(named)})"))
-    return [words for *_, words in sorted(ranked, key=lambda each: each[:2], reverse=True)[:most]]
+    return [words for *_, words in sorted(ranked, key=lambda each: each[:2], reverse=True)[:4]]
 
 
 def document(judged: Judged, name: str, stated: Mapping[str, Any]) -> dict[str, Any]:
@@ -110,7 +110,7 @@ def document(judged: Judged, name: str, stated: Mapping[str, Any]) -> dict[str, 
             "abilities": dict(stated) or None,
             "not_applicable": {r.id: r.note for r in judged.results if r.status == "unavailable"},
             "not_judged": judged.missing,
-            "left_running": list(judged.left),
+            "left_running": judged.left,
             "low_order": judged.low_order,
             "unseen_faults": judged.unseen,
             "likely_faults": likely_faults(judged.results),

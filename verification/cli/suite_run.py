@@ -166,13 +166,10 @@ def _judged(
     from verification.solver_suite import isolated
 
     start, progress = time.perf_counter(), Progress(len(checks))
-    results: list[Result] = []
-    left: list[str] = []
-    identity: dict[str, str | None] = {}
-    ended: KeyboardInterrupt | None = None
+    judged = Judged(checks, tuple(options.only), options.discretisation == "other")
 
-    def judged(result: Result) -> None:
-        results.append(result)
+    def tick(result: Result) -> None:
+        judged.results.append(result)
         progress.tick(f"{result.status:<11} {result.id}")
 
     try:
@@ -183,25 +180,16 @@ def _judged(
                 timeout=_timeout(options),
                 name=name,
                 among=among,
-                identified=identity.update,
+                identified=judged.identity.update,
                 begin=lambda check: progress.show(f"running     {check.id}"),
-                tick=judged,
-                left=left.append,
+                tick=tick,
+                left=judged.left.append,
             )
     except KeyboardInterrupt as end:
-        ended = end
+        judged.ended = end
     progress.close()
-    seconds = time.perf_counter() - start
-    return Judged(
-        checks,
-        tuple(results),
-        tuple(options.only),
-        options.discretisation == "other",
-        identity,
-        tuple(left),
-        ended,
-        seconds,
-    )
+    judged.seconds = time.perf_counter() - start
+    return judged
 
 
 def _timeout(options: argparse.Namespace) -> float:

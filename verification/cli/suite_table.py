@@ -1,19 +1,16 @@
 """Tables of a run of the suite for a paper, beside the published codes: CSV, LaTeX, Markdown, by the suffix.
 
-The published codes' results are those of `reports/results/cross_code.json.gz`, in the version of the suite
-that the file names; ours are in it too.
+The published codes' results are those of `reports/results/cross_code.json.gz`; ours are in it too.
 """
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from verification.output.provenance import ROOT
+from verification.output.text_table import csv_text, markdown_row
 
 if TYPE_CHECKING:
     from verification.framework.case import Result
@@ -40,13 +37,13 @@ def run_entry(identity: Mapping[str, Any], suite: str, results: Iterable[Result]
     return dict(identity) | {"suite": suite, "counts": counts, "results": summarised(found)}
 
 
-def published(path: Path = PUBLISHED) -> list[dict[str, Any]]:
+def published() -> list[dict[str, Any]]:
     """Return the published codes' entries, without set-ups wrong on purpose; none without the file."""
     from verification.output.result_files import read_result
 
-    if not path.is_file():
+    if not PUBLISHED.is_file():
         return []
-    document: Any = read_result(path)
+    document: Any = read_result(PUBLISHED)
     suite = document["suite"]["version"]
     metrics = {case["id"]: case["metric"] for case in document["cases"]}
     entries = [e for e in document["entrants"] if e["installed"] and e["role"] != "trap"]
@@ -65,15 +62,12 @@ def text_of(suffix: str, entries: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _csv(entries: Sequence[Mapping[str, Any]]) -> str:
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    rows: list[Sequence[object]] = [COLUMNS]
     for entry in entries:
         head = [entry["name"], entry.get("version"), entry.get("checksum"), entry["suite"]]
         for row in entry["results"]:
-            numbers = [row["status"], row["error"], row["tolerance"], row.get("metric")]
-            writer.writerow([*head, row["id"], *numbers])
-    return buffer.getvalue()
+            rows.append([*head, row["id"], row["status"], row["error"], row["tolerance"], row.get("metric")])
+    return csv_text(rows)
 
 
 def overview(entries: Sequence[Mapping[str, Any]]) -> tuple[Sequence[str], Rows]:
@@ -107,8 +101,7 @@ def _verdict(row: Mapping[str, Any] | None) -> str:
 
 
 def _markdown(head: Sequence[str], rows: Rows) -> str:
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join(f"| {' | '.join(c.replace('|', chr(92) + '|') for c in line)} |" for line in lines)
+    return "\n".join(map(markdown_row, [head, ["---"] * len(head), *rows]))
 
 
 def _latex(head: Sequence[str], rows: Rows) -> str:

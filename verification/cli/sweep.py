@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 from verification.cli.options import Options, option, output_file, output_text
 from verification.cli.output import (
     PICTURES,
-    StatusLine,
     check_outputs,
     check_suffix,
     check_workers,
@@ -20,6 +19,7 @@ from verification.cli.output import (
     plain,
     refusal,
 )
+from verification.output.files import StatusLine
 from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:

@@ -1,7 +1,6 @@
-"""Surface displacement of a half-space under axisymmetric pressure, by quadrature: the second opinion of its
-siblings.
+"""Surface displacement of a half-space under axisymmetric pressure, by quadrature over rings.
 
-Source: Johnson 1985, Eq. (3.96a), the displacement of a ring of pressure, integrated over its radius.
+Source: Johnson 1985, Eq. (3.96a).
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """Frictionless contact of a paraboloid, its pressure capped at a hardness, from rings of uniform pressure.
 
-Sources: Johnson 1985, section 3.4 (the displacement of a uniformly loaded circle, in complete elliptic
-integrals). The two bounds are found by exchanging all rings that break a sign, with the approach as an
-unknown beside the pressures. Nothing here is shared with the solvers of `refimpl`.
+Sources: Johnson 1985, section 3.4 (uniformly loaded circle). Rings that break a sign are exchanged, all at
+once, with the approach as an unknown. Nothing here is shared with the solvers of `refimpl`.
 """
 
 from __future__ import annotations
@@ -13,9 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ellipe, ellipk
 
+from refimpl.grid import Array
 from verification.exact.hertz import Sphere
-
-Array = NDArray[np.float64]
 
 _EXCHANGES = 100
 _FITTED = 5  # rings beside an edge whose squares are extrapolated to it
@@ -51,10 +49,8 @@ def disc_displacement(r: Array, radius: Array) -> Array:
 def capped_sphere(sphere: Sphere, hardness: float, rings: int = 800) -> Capped:
     """Solve under the sphere's load with pressures up to ``hardness`` (Pa).
 
-    Below half of Hertz' maximum pressure the free rings are a seam thinner than a hundredth of the radius:
-    there `plastic_limit` is closer than these rings.
-
-    Raises ArithmeticError where the exchanges of rings do not end.
+    Below half of Hertz' maximum pressure `plastic_limit` is closer than these rings. Raises ArithmeticError
+    where the exchanges of rings do not end.
     """
     ideal = np.sqrt(sphere.load / (np.pi * hardness))  # the least radius that bears the load
     outer = 1.2 * max(1.2 * ideal, sphere.contact_radius)

@@ -1,18 +1,14 @@
-"""Indentation with friction coupling, in closed form: the two three-dimensional problems with an exact
-answer.
+"""Indentation with friction coupling, in closed form: two three-dimensional problems with an exact answer.
 
 Both rest on Gauss's law in the plane: under an axisymmetric traction q(r) along x the coupling displacement
-is the x component of the gradient of the logarithmic potential, c0 x Q(r)/r^2, where Q(r) is the traction
-force within r and c0 = (1 + nu)(1 - 2 nu)/(2 pi E) of the lower body minus that of the upper body (kernel
-s/rho^2).
+is c0 x Q(r)/r^2, where Q(r) is the traction force within r and c0 = (1 + nu)(1 - 2 nu)/(2 pi E) of the lower
+body minus that of the upper body.
 
-1. `CoupledHertz` (any tau and beta): the sphere's gap corrected by minus the coupling displacement of the
-   Hertz pressure's own friction. Its exact sliding state is the unshifted Hertz pressure; everything (a, c,
-   tau, beta) enters. Inequalities hold outside as in Hertz, since the same correction stands on both sides.
+1. `CoupledHertz` (any tau and beta): the sphere's gap less the coupling displacement of the Hertz pressure's
+   own friction. Its exact sliding state is the unshifted Hertz pressure; everything (a, c, tau, beta) enters.
 2. `ShearedSphere` (beta = 0): uniform tau on a disc displaces c0 pi tau x inside, a slope, so the paraboloid
    only moves: Hertz pressure about x = -pi c0 tau R. The jump of q at the leading edge presses the free
-   surface against the sphere over a width ~ shift^2/2a (see `sliding_plane`), which the solution neglects:
-   relative error (shift/a)^3.
+   surface against the sphere over a width ~ shift^2/2a, which is neglected: relative error (shift/a)^3.
 
 `first_order_shift` has both, for a plain sphere: to first order in c0, by the reciprocal theorem.
 """
@@ -23,11 +19,10 @@ from dataclasses import dataclass
 
 import mpmath as mp
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from refimpl.grid import Array
 from verification.exact.hertz import Sphere
-
-Array = NDArray[np.float64]
 
 UNCERTAINTY = 1e-13
 """Relative error of `CoupledHertz`: rounding (checked by two-dimensional quadrature)."""
@@ -107,10 +102,9 @@ class ShearedSphere:
 def first_order_shift(hertz: Sphere, c0: float, tau: float, beta: float) -> float:
     """Return the pressure's centroid along x (m) under ``r = tau + beta p``, to order ``c0`` (1/Pa).
 
-    The coupling displacement of the Hertz state, c0 x Q(r)/r^2, changes the pressure's moment by minus the
-    work of a tilted punch's pressure, (2 E*/pi) x (a^2 - r^2)^(-1/2) per unit tilt, on it (Betti):
-    -2 E* c0 times the integral of Q(r) r (a^2 - r^2)^(-1/2) over 0 < r < a. tau contributes -pi c0 tau R, as
-    in `ShearedSphere`, and beta -(3/2) E* c0 beta a.
+    By Betti's theorem with a tilted punch's pressure, (2 E*/pi) x (a^2 - r^2)^(-1/2) per unit tilt: the
+    moment changes by -2 E* c0 times the integral of Q(r) r (a^2 - r^2)^(-1/2) over 0 < r < a. tau contributes
+    -pi c0 tau R, as in `ShearedSphere`, and beta -(3/2) E* c0 beta a.
     """
     by_tau = np.pi * tau * hertz.radius
     return float(-c0 * (by_tau + 1.5 * hertz.modulus * beta * hertz.contact_radius))
@@ -119,9 +113,8 @@ def first_order_shift(hertz: Sphere, c0: float, tau: float, beta: float) -> floa
 def coupling_by_quadrature(state: CoupledHertz, x: float, y: float) -> tuple[float, float]:
     """Return the coupling displacement (m) at ``(x, y)`` (m) in contact by s/rho^2, and its error.
 
-    In polar coordinates about the field point the source lies at (x - rho cos w, y - rho sin w), so s/rho^2
-    rho = cos w; the traction along each ray has an elementary integral, of which the Hertz part is half an
-    ellipse's chord segment.
+    In polar coordinates about the field point s/rho^2 rho = cos w, and the traction along each ray has an
+    elementary integral: the Hertz part is half an ellipse's chord segment.
     """
     with mp.workdps(20):
         a, peak = mp.mpf(state.hertz.contact_radius), mp.mpf(state.hertz.peak_pressure)

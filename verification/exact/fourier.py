@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from refimpl.errors import InputError
+from refimpl.grid import Array
 
-Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 UNCERTAINTY = 1e-13

@@ -1,5 +1,4 @@
-"""Greenwood and Tripp's rough sphere: effective pressure when summits carry the load and the bulk bends under
-their average.
+"""Greenwood and Tripp's rough sphere: effective pressure of summits on a bulk that bends under their average.
 
 Source: Greenwood and Tripp 1967, J. Appl. Mech. 34, 153; Johnson 1985, section 13.5. With d(r) the separation
 from the mean plane of the summits (density eta, radius beta, Gaussian heights of rms sigma),
@@ -8,9 +7,8 @@ from the mean plane of the summits (density eta, radius beta, Gaussian heights o
     d(r) = d0 + r^2/2R + u(r),   u(r) = 4/(pi E*) integral of p(s) s/(s + r) K(m) ds, m = 4 s r/(s + r)^2,
 
 and 2 pi times the integral of p r dr is the load. Parameters: alpha = sigma R/a0^2 (a0 of Hertz) and mu =
-(8/3) eta sigma (2 R beta)^(1/2). Pressure and kernel are resolved by Gauss-Legendre panels with the logarithm
-integrated on its own, so the error falls spectrally until the domain's end, where the pressure is below 1e-14
-of its peak.
+(8/3) eta sigma (2 R beta)^(1/2). Gauss-Legendre panels with the logarithm integrated on its own: the error
+falls spectrally.
 """
 
 from __future__ import annotations
@@ -19,13 +17,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.special import ellipkm1
 
 from refimpl.errors import InputError
+from refimpl.grid import Array
 from verification.exact.hertz import Sphere
-
-Array = NDArray[np.float64]
 
 ORDER = 12  # nodes of a panel
 UNCERTAINTY = 1e-9
@@ -202,9 +199,8 @@ def gaussian_summits(rms: float, correlation_length: float) -> tuple[float, floa
     """Return the summit rms height (m), density (1/m^2) and mean tip radius (m) of a Gaussian isotropic
     surface of the ACF ``rms^2 exp(-2.3 (r/correlation_length)^2)`` (paper Eq. 9).
 
-    Spectral moments of a profile: m0 = rms^2, m2 = 2 c rms^2, m4 = 12 c^2 rms^2, c =
-    2.3/correlation_length^2, so Nayak's alpha is 3. Nayak 1971; Bush, Gibson and Keogh 1976; McCool 1986:
-    density m4/(6 pi sqrt(3) m2), tip radius (3/8) sqrt(pi/m4), summit variance (1 - 0.8968/alpha) m0.
+    Spectral moments m0 = rms^2, m2 = 2 c rms^2, m4 = 12 c^2 rms^2, c = 2.3/correlation_length^2, so Nayak's
+    alpha is 3. Nayak 1971; Bush, Gibson and Keogh 1976; McCool 1986.
     """
     c = 2.3 / correlation_length**2
     m0, m2, m4 = rms**2, 2 * c * rms**2, 12 * c**2 * rms**2

@@ -9,11 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 from scipy.special import elliprd, elliprf
 
-Array = NDArray[np.float64]
+from refimpl.grid import Array
 
 UNCERTAINTY = 1e-14
 """Relative error of the closed forms below: rounding only."""

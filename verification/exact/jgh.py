@@ -1,11 +1,8 @@
-"""Two-dimensional waviness Delta cos(2 pi x/lambda) cos(2 pi y/lambda) pressed flat: asymptotes, and the
-range between.
+"""Two-dimensional waviness Delta cos(2 pi x/lambda) cos(2 pi y/lambda) pressed flat.
 
 Source: Johnson, Greenwood and Higginson 1985, Int. J. Mech. Sci. 27, 383; Johnson 1985, section 13.2. Full
 contact from p* = sqrt(2) pi E* Delta/lambda. Light load: Hertz on two crests per lambda^2. Near full contact:
-two penny-shaped openings, whose edge stress vanishes. Between the two there is no closed form:
-`AREA_FRACTION` is our own computation (`extrapolated` below: the exact continuous symbol on a quarter cell,
-21 grids from 96 to 320 points a side).
+two penny-shaped openings. Between the two: `AREA_FRACTION`, our own computation (`extrapolated` below).
 """
 
 from __future__ import annotations
@@ -13,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.fft import dctn, idctn
 
-Array = NDArray[np.float64]
+from refimpl.grid import Array
 
 AREA_FRACTION = {
     0.01: (0.03643, 2e-4), 0.02: (0.05884, 2e-4), 0.05: (0.11300, 3e-4), 0.1: (0.19059, 3e-4),
@@ -64,20 +61,19 @@ def _displacement(symbol: Array, p: Array) -> Array:
     return np.asarray(idctn(symbol * dctn(p)))
 
 
-def relax(load_ratio: float, n: int, *, tolerance: float = 1e-9, limit: int = 4000) -> Array:
+def relax(load_ratio: float, n: int) -> Array:
     """Return p/p* ``(n, n)`` on the quarter cell 0 < x, y < lambda/2, of mean ``load_ratio``.
 
-    Conjugate gradients on the contact set, exact symbol 2/(E* q) by cosine transform. Converged when the
-    complementarity gap, mean of p (w - min w), is below ``tolerance`` times the elastic scale p* Delta;
-    raises RuntimeError otherwise.
+    Conjugate gradients on the contact set, exact symbol 2/(E* q) by cosine transform. Converged when the mean
+    of p (w - min w) is below 1e-9 of p* Delta times that; raises RuntimeError otherwise.
     """
     shape, symbol = _cell(n)
     p = np.full((n, n), load_ratio)
     direction, previous, conjugate = np.zeros_like(p), 1.0, 0.0
-    for _ in range(limit):
+    for _ in range(4000):
         touching = p > 0
         w = _displacement(symbol, p) + shape
-        if float(np.mean(p * (w - w.min()))) < tolerance * load_ratio:
+        if float(np.mean(p * (w - w.min()))) < 1e-9 * load_ratio:
             return p
         w = w - w[touching].mean()
         norm = float(np.sum(w[touching] ** 2))
@@ -96,9 +92,8 @@ def relax(load_ratio: float, n: int, *, tolerance: float = 1e-9, limit: int = 40
 def extrapolated(load_ratio: float, sizes: Sequence[int]) -> tuple[float, float, float]:
     """Return the fine grids' contact fraction, its standard error, and mean planes' approach/Delta.
 
-    The contact of n x n points counts elements cut by the edge as whole, order 1 in 1/n with scatter n^(-3/2)
-    from how the edge falls on the points: a line in 1/n over many sizes, weighted by that scatter. The
-    approach is of order 2.
+    Elements cut by the edge count as whole, order 1 in 1/n with scatter n^(-3/2): a line in 1/n over many
+    sizes, weighted by that scatter. The approach is of order 2.
     """
     n = np.asarray(sizes, dtype=float)
     areas, approaches = [], []

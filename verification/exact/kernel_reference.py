@@ -16,11 +16,9 @@ from typing import Any
 
 import mpmath as mp
 import numpy as np
-from numpy.typing import NDArray
 
 from verification.framework.case import Unavailable
 
-Array = NDArray[np.float64]
 Corner = Callable[[Any, Any], Any]
 
 DIGITS = 50

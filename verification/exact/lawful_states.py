@@ -1,8 +1,7 @@
 """Lawful states by brute force or integer programming: over all contact sets, without a contact solver.
 
 A contact set S is lawful when the pressure that solves the linear equations on it, with tau acting on S and
-nowhere else, is positive on S and leaves no penetration outside. Slopes are neglected, and bodies are
-half-spaces. With tau = 0 there is
+nowhere else, is positive on S and leaves no penetration outside; slopes are neglected. With tau = 0 there is
 exactly one (`positive_definite`); with tau there may be none, one or several.
 """
 
@@ -68,7 +67,7 @@ def lawful_states(scene: rf.Scene) -> list[NDArray[np.bool_]]:
     return found
 
 
-def none_is_lawful(scene: rf.Scene, elements: int, seconds: float = 120.0) -> bool:
+def none_is_lawful(scene: rf.Scene, elements: int) -> bool:
     """Return whether integer programming proves that no contact set is lawful; False where it is not decided.
 
     Shares f of the load on elements, contact s of 0 or 1, and the approach d obey sum f = 1, 0 <= f <= s and
@@ -94,7 +93,7 @@ def none_is_lawful(scene: rf.Scene, elements: int, seconds: float = 120.0) -> bo
         constraints=constraints,
         integrality=contact,
         bounds=Bounds(least, most),
-        options={"time_limit": seconds},
+        options={"time_limit": 120.0},
     )
     return bool(found.status == _INFEASIBLE)
 

@@ -1,9 +1,8 @@
 """Contact states that are exact by construction: the answer is chosen first, the surfaces follow from it.
 
 Chosen are the contact set, the pressure on it, the active set of tau and the common surface with its slopes.
-Eq. (7) then gives the displacements, as plain sums in 30 digits over influence integrals in 50 digits, and
-Eq. (6) the gap: its equality on contact, with room to spare elsewhere. Eq. (2) gives the load. With a
-hardness some pressures are at it, and there the bodies come nearer by a chosen plastic indentation.
+Eq. (7) then gives the displacements, as sums in 30 digits, Eq. (6) the gap and Eq. (2) the load. Pressures at
+a hardness bring the bodies nearer by a chosen plastic indentation.
 """
 
 from __future__ import annotations

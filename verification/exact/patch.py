@@ -1,8 +1,4 @@
-"""Uniform pressure on a rectangle of a half-space: displacement inside and outside.
-
-Source: Love 1929; Johnson 1985, Eq. (3.25). Closed form here in asinh; the check integrates 1/rho with
-mpmath.
-"""
+"""Uniform pressure on a rectangle of a half-space: Love 1929; Johnson 1985, Eq. (3.25); and by quadrature."""
 
 from __future__ import annotations
 
@@ -10,11 +6,10 @@ from dataclasses import dataclass
 
 import mpmath as mp
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from appendix_a.fem3d.patch import normal_integral
-
-Array = NDArray[np.float64]
+from refimpl.grid import Array
 
 UNCERTAINTY = 1e-13
 """Relative error of the closed form within ten patch sizes: rounding, amplified by the cancellation of four
@@ -50,8 +45,7 @@ class Patch:
 def displacement_by_quadrature(patch: Patch, x: float, y: float) -> tuple[float, float]:
     """Return the displacement (m) at ``(x, y)`` (m) and the quadrature's error (m), from the definition.
 
-    In polar coordinates about the field point 1/rho cancels the Jacobian: the chord of the patch along each
-    ray remains, smooth between the directions of the corners.
+    In polar coordinates about the field point 1/rho cancels the Jacobian: the chord along each ray remains.
     """
     with mp.workdps(20):
         px, py = mp.mpf(x), mp.mpf(y)

@@ -53,13 +53,14 @@ def symmetric_part(M: int, beta: float, ratio: float, slope: float = 0.0) -> Arr
     return np.asarray(np.linalg.eigvalsh((G + G.T) / 2))
 
 
-def least_symbol(M: int = 64) -> float:
+def least_symbol() -> float:
     """Return the symbol's least value, at p = q = pi: the limit of the least eigenvalue on growing grids.
 
-    Sums the coefficients out to M elements with alternating signs, whose tail is below the last term.
+    Sums the coefficients out to 64 elements with alternating signs, whose tail is below the last term.
     """
     from refimpl.kernels import normal_table
 
+    M = 64
     table = normal_table(M, M, 1.0)
     signs = (-1.0) ** np.arange(M) * np.where(np.arange(M) == 0, 1.0, 2.0)
     signs[-1] /= 2  # half of the last term: Euler's acceleration of an alternating series

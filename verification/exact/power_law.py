@@ -1,9 +1,7 @@
-"""Rigid axisymmetric indenters C r^n: the cone (Sneddon), the paraboloid (Hertz), and the load doubling of
-each.
+"""Rigid axisymmetric indenters C r^n: the cone (Sneddon), the paraboloid (Hertz), the load doubling of each.
 
-Sources: Sneddon 1965; Galin 1961; Johnson 1985, section 5.2 (cone). In the form of Popov's g(x) = kappa_n C
-x^n: delta = g(a), P = 2 E* a delta n/(n + 1), p(r) = (E*/pi) integral of g'(x)/sqrt(x^2 - r^2) over r < x <
-a.
+Sources: Sneddon 1965; Galin 1961; Johnson 1985, section 5.2 (cone). Popov's g(x) = kappa_n C x^n: delta =
+g(a), P = 2 E* a delta n/(n + 1), p(r) = (E*/pi) integral of g'(x)/sqrt(x^2 - r^2) over r < x < a.
 """
 
 from __future__ import annotations
@@ -11,10 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.special import gamma, hyp2f1
 
-Array = NDArray[np.float64]
+from refimpl.grid import Array
 
 UNCERTAINTY = 1e-13
 """Relative error of the closed forms: rounding, and scipy's 2F1 (checked against mpmath in the tests)."""

@@ -58,21 +58,21 @@ class CircularPunch:
         return 2 * self.approach / np.pi * np.arcsin(1 / outer)
 
 
-def square_stiffness(side: float, modulus: float, capacitance: float = UNIT_SQUARE_CAPACITANCE) -> float:
+def square_stiffness(side: float, modulus: float) -> float:
     """Return P/delta (N/m) of a square punch of edge ``side`` (m), ``modulus`` E* (Pa).
 
     >>> f"{square_stiffness(2.0, 1.0) / 2:.4f} E* 2a delta"
     '1.1523 E* 2a delta'
     """
-    return np.pi * capacitance * modulus * side
+    return np.pi * UNIT_SQUARE_CAPACITANCE * modulus * side
 
 
-def square_capacitance(n: int, grading: float = 4.0) -> float:
+def square_capacitance(n: int) -> float:
     """Return our own C: piecewise-constant collocation on ``n`` graded elements per half side.
 
-    Quarter plate 0 < x, y < 1, nodes ``1 - (1 - i/n)^grading``, symmetric about both axes and the diagonal.
+    Quarter plate 0 < x, y < 1, nodes ``1 - (1 - i/n)^4``, symmetric about both axes and the diagonal.
     """
-    plate = _Plate.graded(n, grading)
+    plate = _Plate.graded(n)
     density = np.linalg.solve(plate.potential(plate.x, plate.y), np.ones(len(plate.x)))
     return float(np.sum(density * plate.area) / 2)  # the plate's side is 2
 
@@ -88,8 +88,8 @@ class _Plate:
     area: Array
 
     @classmethod
-    def graded(cls, n: int, grading: float) -> _Plate:
-        nodes = 1 - (1 - np.arange(n + 1) / n) ** grading
+    def graded(cls, n: int) -> _Plate:
+        nodes = 1 - (1 - np.arange(n + 1) / n) ** 4
         middle, half = (nodes[1:] + nodes[:-1]) / 2, np.diff(nodes) / 2
         i, j = np.tril_indices(n)
         images = np.where(i == j, 4, 8)

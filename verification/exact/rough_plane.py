@@ -1,25 +1,20 @@
-"""Random rough planes: true area against load at light pressure, A/A0 = kappa p/(E* h'), h' the rms
-gradient, that of |grad h|.
+"""Random rough planes: true area at light pressure, A/A0 = kappa p/(E* h'), h' the rms of |grad h|.
 
-Two theories bracket, and simulations fill, the range:
 - Bush, Gibson and Thomas 1975 (Wear 35, 87): kappa = sqrt(2 pi) = 2.507, the limit of vanishing area.
 - Persson 2001 (J. Chem. Phys. 115, 3840): A/A0 = erf(sqrt(2) p/(E* h')), so kappa = sqrt(8/pi) = 1.596.
 - Simulations (Hyun, Pei, Molinari and Robbins 2004; Campana and Mueser 2007; Putignano, Afferrante, Carbone
-  and Demelio 2012; Prodanov, Dapp and Mueser 2014) lie between, from about 2 upwards; Yastrebov, Anciaux and
-  Molinari 2017 find the slope to fall with Nayak's parameter and with the area itself, and coarse grids to
-  count too much. The range discussed as a whole is 2.0 to 2.6.
+  and Demelio 2012; Prodanov, Dapp and Mueser 2014; Yastrebov, Anciaux and Molinari 2017): 2.0 to 2.6.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 from scipy.special import erf
 
+from refimpl.grid import Array
 from verification.exact.greenwood_tripp import overlap_integral
-
-Array = NDArray[np.float64]
 
 KAPPA_BUSH_GIBSON_THOMAS = float(np.sqrt(2 * np.pi))
 KAPPA_PERSSON = float(np.sqrt(8 / np.pi))

@@ -28,9 +28,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from refimpl.grid import Array
 
 UNCERTAINTY = 1e-14
 """Relative error of the closed forms: rounding only."""

@@ -1,9 +1,8 @@
-"""The sliding Westergaard problem: a wave pressed on a half-plane of another material, with Coulomb's or
-binomial friction.
+"""The sliding Westergaard problem: a wave pressed on a half-plane of another material, with friction.
 
-Our own extension of Westergaard 1939 by the exponents of `sliding_plane`; it is periodic, so that a doubly
-periodic solver can be held to it without end effects. Gap Delta (1 - cos 2 psi), psi = pi x/lambda; kernels
-cot(psi - psi') for 1/x, and a mean-free sign for the shear. The slope of u plus gap vanishes in contact when
+Our own periodic extension of Westergaard 1939 by the exponents of `sliding_plane`. Gap Delta (1 - cos 2 psi),
+psi = pi x/lambda; kernels cot(psi - psi') for 1/x, and a mean-free sign for the shear. The slope of u plus
+gap vanishes in contact when
 
     PV integral of p cot(psi - psi') dpsi' - pi d (q - mean q) = (pi E* Delta/lambda) pi sin 2 psi.
 
@@ -22,12 +21,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from refimpl.errors import InputError
-
-Array = NDArray[np.float64]
+from refimpl.grid import Array
 
 UNCERTAINTY = 1e-12
 """Relative: the edges come from root finding to 1e-15 of a period, the rest is rounding."""
@@ -35,9 +33,7 @@ UNCERTAINTY = 1e-12
 
 @dataclass(frozen=True)
 class SlidingWave:
-    """``mean_pressure`` (Pa), wave ``amplitude``, ``wavelength`` (m), ``modulus`` E* (Pa), ``coupling`` d,
-    ``tau``, ``beta``.
-    """
+    """``mean_pressure`` (Pa), ``amplitude``, ``wavelength`` (m), E* (Pa), ``coupling`` d, tau (Pa), beta."""
 
     mean_pressure: float
     amplitude: float

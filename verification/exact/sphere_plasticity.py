@@ -1,7 +1,6 @@
 """A published finite-element law of an elastic, perfectly plastic sphere on a rigid flat, for comparison.
 
-Source: Kogut and Etsion 2002, J. Appl. Mech. 69, 657. It counts the interference from that of first yield,
-below the surface. The law is a fit: its authors give some per cent, as much as it jumps between its pieces.
+Source: Kogut and Etsion 2002, J. Appl. Mech. 69, 657: a fit over the interference of first yield.
 """
 
 from __future__ import annotations

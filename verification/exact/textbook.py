@@ -1,8 +1,7 @@
 """Influence integrals by the textbook's corner sums, in double precision and without `refimpl.kernels`.
 
-They lose digits with the square of the distance in elements: below 1e-13 on the small grids that matrices
-allow, 1.4e-11 at 160 elements.
-Sources: Love 1929; Johnson 1985, Eqs (3.25) and (3.73).
+Below 1e-13 on the small grids that matrices allow, 1.4e-11 at 160 elements. Sources: Love 1929; Johnson 1985,
+Eqs (3.25) and (3.73).
 """
 
 from __future__ import annotations

@@ -1,9 +1,7 @@
-"""One-dimensional waviness pressed flat: gap Delta (1 - cos(2 pi x/lambda)), partial to full contact,
-frictionless.
+"""One-dimensional waviness pressed flat: gap Delta (1 - cos(2 pi x/lambda)), frictionless.
 
-Source: Westergaard 1939; Johnson 1985, section 13.2. The approach (mean planes, as the periodic solver counts
-it) is integrated here from Johnson's flat-punch increment: d(approach)/d(mean pressure) = -(2 lambda/(pi E*))
-ln sin(pi a/lambda).
+Source: Westergaard 1939; Johnson 1985, section 13.2. The approach of the mean planes is integrated here from
+Johnson's flat-punch increment: d(approach)/d(mean pressure) = -(2 lambda/(pi E*)) ln sin(pi a/lambda).
 """
 
 from __future__ import annotations
@@ -12,11 +10,10 @@ from dataclasses import dataclass
 
 import mpmath as mp
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from refimpl.errors import InputError
-
-Array = NDArray[np.float64]
+from refimpl.grid import Array
 
 UNCERTAINTY = 1e-14
 """Relative error of the closed forms: rounding only."""

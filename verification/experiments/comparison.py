@@ -1,8 +1,7 @@
-"""Comparison of predictions with measurements, after ASME V&V 20 (2009).
+"""Comparison of predictions with measurements, after ASME V&V 20 (2009); every U is a half-width of 95 %.
 
-Every U is a half-width that holds with 95 %. E = S - D is the predicted number S less the measured one D;
-U_val^2 = U_num^2 + U_input^2 + U_D^2. |E| <= U_val: the model's error is not larger than what is unknown of
-solver, inputs and measurement together.
+E = S - D is predicted less measured, U_val^2 = U_num^2 + U_input^2 + U_D^2. |E| <= U_val: the model's error
+is not larger than what is unknown of solver, inputs and measurement together.
 """
 
 from __future__ import annotations

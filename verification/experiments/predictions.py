@@ -18,6 +18,7 @@ from refimpl.scene.scene_file import read_tolerances
 from refimpl.solution.quantities import error_bound
 from verification.exact.hertz import Sphere
 from verification.experiments.comparison import Point, measured, repeated
+from verification.framework.certified import certified
 
 GRID = 128
 ROOM = 2.6
@@ -38,10 +39,7 @@ def press(scene: rf.Scene, load: float) -> rf.Solution:
     """Solve a ball on a flat under a load (N) in a fitting domain; RuntimeError if it does not converge."""
     radius = parameters(scene)["upper.surface[0].radius"]
     hertz = Sphere(load, radius, Pair(scene.lower.material, scene.upper.material).reduced_modulus)
-    found = rf.solve(replace(scene, load=load, side=ROOM * hertz.contact_radius), GRID)
-    if not found.converged:
-        raise RuntimeError(f"{found.status.value} under {load:g} N")
-    return found
+    return certified(rf.solve(replace(scene, load=load, side=ROOM * hertz.contact_radius), GRID))
 
 
 def increment(scene: rf.Scene, first: float, load: float) -> Stated:

@@ -1,7 +1,6 @@
-"""Observed orders of convergence from errors against a known value.
+"""Observed orders of convergence from errors against a known value, fitted over three grids at least.
 
-All grids, at least three, are fitted by least squares, since two or three grids alone make noise look like an
-order (Eca and Hoekstra 2014).
+Two or three grids alone make noise look like an order (Eca and Hoekstra 2014).
 """
 
 from __future__ import annotations

@@ -30,10 +30,9 @@ def case(
 ) -> Callable[[Function], Function]:
     """Declare the decorated function, which is returned unchanged, as a verification case.
 
-    `metric` is one of "relative", "absolute", "at_most", "at_least", "equal" (see `Metric`), `tier` "quick"
-    or "full". Title, claim, source and reason of the tolerance stand in the function's docstring (see
-    `described`), which names the module's constants in braces; `texts` replaces them by name.
-    Raises ValueError, at import, for a second case of the same id and for whatever `Case` refuses.
+    `metric` is a value of `Metric`, `tier` one of `Tier`. Title, claim, source and reason of the tolerance
+    stand in the function's docstring (see `described`); `texts` replaces them by name. Raises ValueError, at
+    import, for a second case of the same id and for whatever `Case` refuses.
     """
 
     def declare(function: Function) -> Function:
@@ -46,9 +45,12 @@ def case(
             tier=Tier(tier),
         )
         old = _declared.get(id)
-        if old is not None and not _imported_anew(old, new):
-            places = f"{old.module}:{old.line} and {new.module}:{new.line}"
-            raise ValueError(f"case {id!r} is declared twice: {places}")
+        if old is not None:
+            # one line compiled again, as by `importlib.reload`, is no second declaration; a loop's is
+            same_line = (old.module, old.line) == (new.module, new.line)
+            if not same_line or old.code is new.code:
+                places = f"{old.module}:{old.line} and {new.module}:{new.line}"
+                raise ValueError(f"case {id!r} is declared twice: {places}")
         _declared[id] = new
         return function
 
@@ -98,15 +100,6 @@ def family(
         return function
 
     return declare
-
-
-def _imported_anew(old: Case, new: Case) -> bool:
-    """Return whether the same line of the same module was compiled again, as `importlib.reload` does.
-
-    One compiled line that declares twice is a loop whose ids are not all different.
-    """
-    same_line = (old.module, old.line) == (new.module, new.line)
-    return same_line and old.code is not new.code
 
 
 def load(package: str = CASES_PACKAGE) -> tuple[Case, ...]:

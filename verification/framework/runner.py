@@ -65,9 +65,8 @@ def run(
     """
     tier, globs, start = Tier(tier), tuple(only), time.perf_counter()
     chosen = select(load(package), tier, globs)
-    progress = Progress(len(chosen))
-    results = run_all(chosen, jobs, lambda r: progress.tick(f"{r.status:<11} {r.id}"))
-    progress.close()
+    with Progress(len(chosen)) as progress:
+        results = run_all(chosen, jobs, lambda r: progress.tick(f"{r.status:<11} {r.id}"))
     return Run(tier, globs, tuple(results), time.perf_counter() - start)
 
 

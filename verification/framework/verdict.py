@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from enum import StrEnum
 
 from verification.framework.case import Measured
@@ -34,3 +34,12 @@ def judged(
         data={"verdict": verdict.value, **data},
         note=sentence,
     )
+
+
+def percents(shares: Sequence[float], digits: int = 1) -> str:
+    """Return shares in per cent, for a sentence.
+
+    >>> percents([0.123, 0.5], 0)
+    '12%, 50%'
+    """
+    return ", ".join(f"{share:.{digits}%}" for share in shares)

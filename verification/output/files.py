@@ -9,10 +9,11 @@ import secrets
 import shutil
 import sys
 import tempfile
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TextIO
+from typing import Self, TextIO
 
 _UNUSUAL = re.compile(r"[^\n -~]")
 _SHOWN = 40  # characters of the name of a target in that of its temporary file
@@ -22,11 +23,9 @@ _SHOWN = 40  # characters of the name of a target in that of its temporary file
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary path beside `path`, of its suffix, to take its place when the block ends well.
 
-    The file appears in one step; after an error the old file, if any, is still there. What is no regular
-    file, a device or a pipe, is never replaced: the finished file is copied to it. Nor is a link replaced,
-    but the file that it leads to.
-    A new file has the mode that the umask leaves, another keeps its own.
-    Raises OSError where the directory cannot be written to, or nobody reads the pipe.
+    The file appears in one step, with the mode that the umask leaves, or its old one. A device or a pipe is
+    not replaced: the finished file is copied to it; of a link, the file that it leads to is replaced. Raises
+    OSError where the directory cannot be written to, or nobody reads the pipe.
     """
     if is_stream(path):
         with tempfile.TemporaryDirectory() as folder:
@@ -113,11 +112,42 @@ def rewrite_line(text: str) -> None:
     sys.stderr.flush()
 
 
-class Progress:
-    """One line on stderr, rewritten at each step, and nothing at all when stderr is no terminal."""
+class StatusLine:
+    """One line of a terminal's stderr, rewritten; cleared after a ``with`` block. Nothing on what is none."""
+
+    pause = 0.1
+    """Seconds between two texts, at least."""
+
+    def __init__(self) -> None:
+        self._shown, self._next = sys.stderr.isatty(), 0.0
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def show(self, text: str) -> None:
+        """Rewrite the line, unless it is too early."""
+        if self._shown and time.monotonic() >= self._next:
+            self._next = time.monotonic() + self.pause
+            rewrite_line(text)
+
+    def close(self) -> None:
+        """Clear the line; the next text is shown at once."""
+        self._next = 0.0
+        if self._shown:
+            rewrite_line("")
+
+
+class Progress(StatusLine):
+    """Status line with a count of steps, every one of which is shown."""
+
+    pause = 0.0
 
     def __init__(self, total: int) -> None:
-        self.total, self.done, self._shown = total, 0, sys.stderr.isatty()
+        super().__init__()
+        self.total, self.done = total, 0
 
     def tick(self, text: str) -> None:
         """Count a finished step and show its text, cut to the terminal's usual width."""
@@ -126,10 +156,4 @@ class Progress:
 
     def show(self, text: str) -> None:
         """Show a text beside the count, such as the step that begins."""
-        if self._shown:
-            rewrite_line(f"[{self.done}/{self.total}] {text}")
-
-    def close(self) -> None:
-        """Clear the line."""
-        if self._shown:
-            rewrite_line("")
+        super().show(f"[{self.done}/{self.total}] {text}")

@@ -1,8 +1,7 @@
 """Result files: JSON documents, which the repository keeps compressed with gzip as ``NAME.json.gz``.
 
-`read_result` reads both forms; `write_result` compresses where the path ends in ``.gz``. The same document
-gives the same bytes. ``python -m verification.output.result_files FILE.json`` compresses a plain file
-before it is committed.
+The same document gives the same bytes. ``python -m verification.output.result_files FILE.json`` compresses a
+plain file before it is committed.
 """
 
 from __future__ import annotations

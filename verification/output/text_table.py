@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 WIDTH = 100
 """Columns that tables and texts keep within."""
@@ -22,6 +24,26 @@ def columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
         cells = (cell.ljust(width) + "  " for cell, width in zip(row[:-1], widths, strict=True))
         lines.append(wrapped(row[-1], indent + "".join(cells)))
     return "\n".join(lines)
+
+
+def markdown_row(cells: Iterable[str]) -> str:
+    """Return a row of a table in Markdown.
+
+    >>> markdown_row(["a|b", "c"])
+    '| a\\|b | c |'
+    """
+    return f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |"
+
+
+def csv_text(rows: Iterable[Iterable[object]]) -> str:
+    """Return rows as CSV: floats in their shortest exact form, None as an empty field.
+
+    >>> csv_text([("x", "y"), (0.1, None)])
+    'x,y\\n0.1,\\n'
+    """
+    buffer = io.StringIO()
+    csv.writer(buffer, lineterminator="\n").writerows(rows)
+    return buffer.getvalue()
 
 
 def wrapped(text: str, first: str) -> str:

@@ -10,14 +10,7 @@ import refimpl as rf
 from verification.exact.textbook import normal_matrix
 from verification.properties.registry import Solver, invariant, require
 from verification.properties.samples import Sample, samples
-from verification.properties.states import (
-    ENDED_WELL,
-    RESIDUAL,
-    compliances,
-    displacement,
-    from_first_contact,
-    solved,
-)
+from verification.properties.states import RESIDUAL, compliances, displacement, from_first_contact, solved
 
 FOUR_CORNERS = Sample(bumps=((2, 0, 2), (0, 0, 0), (2, 0, 2)), beta=1)
 """Symmetric without friction: slopes tip no element then, and the plan neglects their 1e-7 of pressures."""
@@ -85,7 +78,7 @@ def monotone_in_approach(solver: Solver, sample: Sample) -> None:
     """Load and contact set grow with a prescribed approach."""
     first = solved(solver, sample, oblique=False)
     deeper = solver(sample.scene, sample.shape, approach=1.25 * first.approach, oblique=False)
-    require(deeper.status in ENDED_WELL)
+    require(deeper.converged)
     require(deeper.normal_force > first.normal_force)
     require(not np.any(first.contact & ~deeper.contact))
 
@@ -102,8 +95,8 @@ def weak_friction(solver: Solver, sample: Sample) -> None:
     weak = replace(sample.scene, friction=rf.Friction(tau=SMALL * friction.tau, beta=SMALL * friction.beta))
     none = replace(sample.scene, friction=rf.Friction())
     faint, still = (solver(scene, sample.shape, oblique=True) for scene in (weak, none))
-    require(faint.status in ENDED_WELL)
-    require(still.status in ENDED_WELL)
+    require(faint.converged)
+    require(still.converged)
     # tau is at most 0.6 of the mean pressure, and c at most half of a: amplified at most by the grid's
     # condition number, which is below 100
     require(np.abs(faint.pressure - still.pressure).max() <= (100 * SMALL + RESIDUAL) * still.max_pressure)

@@ -81,16 +81,13 @@ def _coarse_misfit(*, printed: bool) -> float:
     """Return the mu of Table 3's two roughest columns against Eq. (10) with the A beside it: the largest
     misfit of the printed 128 x 128 and 256 x 256, or of ours on 128 x 128.
     """
-    pairs = [
-        [(c.contact_area[mesh], c.friction_coefficient[mesh]) for mesh in (0, 1)]
-        if printed
-        else [(_ours("contact_area", c.flat_rms), _ours("friction_coefficient", c.flat_rms))]
-        for c in TABLE3[2:]
-    ]
-    misfits = [
-        _off(mu, friction_coefficient_at(LAW, SMOOTH.load / A)) for column in pairs for A, mu in column
-    ]
-    return max(misfits)
+    names, pairs = ("contact_area", "friction_coefficient"), []
+    for c in TABLE3[2:]:
+        if printed:
+            pairs += [tuple(getattr(c, name)[mesh] for name in names) for mesh in (0, 1)]
+        else:
+            pairs.append(tuple(_ours(name, c.flat_rms) for name in names))
+    return max(_off(mu, friction_coefficient_at(LAW, SMOOTH.load / A)) for A, mu in pairs)
 
 
 def _outside(roughness: Iterable[float]) -> float:

@@ -51,11 +51,6 @@ class Profile:
         return _rms(self.hertz - self.greenwood_tripp)
 
     @property
-    def misfit_of_half(self) -> float:
-        """The misfit of half of Greenwood and Tripp's pressure from theirs, which should not pass."""
-        return _rms(self.greenwood_tripp / 2)
-
-    @property
     def noise(self) -> float:
         """Contribution of sampling alone to a misfit: the rms standard error."""
         return _rms(self.surfaces.std(axis=0, ddof=1) / np.sqrt(len(self.surfaces)))

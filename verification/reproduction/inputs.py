@@ -87,7 +87,7 @@ def sensitivities(column: Column, mesh: int, realisations: int) -> dict[str, dic
 
     Those to the load and R are differences of solves. The others follow from scaling: areas are unchanged
     where all heights and the load scale together, or go with all lengths squared, as the load does; pressures
-    scale with E*. The side only sets the element length: it has none.
+    scale with E*. The side only sets the element length.
     """
     load, radius = (differences(column, name, mesh, realisations) for name in ("load", "R"))
     return {

@@ -63,8 +63,8 @@ class Tangential:
 def displacements(scene: rf.Scene, found: rf.Solution) -> Tangential:
     """Return displacements by the solution's tractions; along x, ValueError otherwise.
 
-    At a fixed place the deformed surface shows the height that was a displacement away, so the gap changes by
-    ``-u_upper . grad z_upper + u_lower . grad z_lower``.
+    The deformed surface shows the height that was a displacement away: the gap changes by ``-u_upper . grad
+    z_upper + u_lower . grad z_lower``.
     """
     if scene.sliding_direction != 0:
         raise ValueError("written for sliding along x")

@@ -1,7 +1,6 @@
 """Scenes on which the two solvers are held against each other: each stresses one part of the model.
 
-Small grids, since the dense reference is limited to them; sizes are odd, even and not only powers of two.
-Lengths in m, moduli and stresses in Pa, forces in N, angles in rad.
+Small grids, as the dense reference is limited to them; odd, even, not only powers of two. SI units, rad.
 """
 
 from __future__ import annotations

@@ -1,10 +1,8 @@
 """Random scenes on which the plan's estimates are compared with what neglecting each term really changes.
 
-Four kinds: smooth balls (on a flat or in a cup), balls on roughness, rough planes (free or periodic), and
-two rough bodies. Moduli over 2.5 decades, Poisson's ratios of 0 to 0.5 (a quarter of the pairs identical),
-rms slopes of 3e-4 to 0.1, contact over 1 % to 50 % of a plane, tau and beta each absent in half of the
-scenes. The effect is the difference of two solves on one grid, of mu over local friction and of A; without
-friction, of mu itself.
+Smooth balls (on a flat or in a cup), balls on roughness, rough planes (free or periodic), two rough bodies;
+rms slopes of 3e-4 to 0.1, contact over 1 % to 50 % of a plane. The effect is the difference of two solves on
+one grid, of mu over local friction and of A; without friction, of mu itself.
 """
 
 from __future__ import annotations

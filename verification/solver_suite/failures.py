@@ -30,8 +30,7 @@ def _levels(further: bool) -> dict[str, dict[str, str]]:
 def by_dimension(results: Iterable[Result]) -> Counts:
     """Return the dimensions that tell failures apart best, with those of their levels that have any.
 
-    Dimensions are ordered by chi squared of their table of failures less its mean where failures are
-    scattered at random, the number of levels less one. Without a positive one, none is returned.
+    By chi squared of their table of failures less its mean under chance; without a positive one, none.
     """
     counts: Counts = {}
     for result in results:

@@ -35,11 +35,10 @@ def of_command(words: Sequence[str]) -> Identity:
 
 
 def of_object(module: str, found: object) -> Identity:
-    """Return the identity of an object of an imported module.
+    """Return the identity of an object of an imported module; None stands for what cannot be found out.
 
-    ``version`` and ``checksum`` are attributes of a published code. Otherwise they are the version of the
-    distribution that installed the module's package, and the checksum of the module's file. None stands for
-    what cannot be found out.
+    A published code has it as attributes; else it is the version of the distribution that installed the
+    module's package, and the checksum of the module's file.
     """
     return {
         "version": _text(or_none(lambda: getattr(found, "version", None) or _installed(module))),

@@ -1,9 +1,8 @@
 """The suite with a solver in a process of its own: the judge's objects, here, are not the solver's to change.
 
-It runs as the same user and may forge a reply, so no number of one is believed but what the judge recomputes.
-Who a solver is, and what it declines, is its own word. It may crash, hang, fork, or write into every
-descriptor that it finds: its case gets an `error`, and a new process starts. What it started is ended with
-it, whatever session that is in (`process.end_all`).
+It may forge a reply, so no number of one is believed but what the judge recomputes; who it is, and what it
+declines, is its own word. It may crash, hang, or fork: its case gets an `error`, and a new process starts.
+What it started is ended with it (`process.end_all`).
 """
 
 from __future__ import annotations
@@ -162,9 +161,7 @@ def run(
     """Return the results of checks that match ``globs`` (or all), ``timeout`` seconds a problem.
 
     ``among`` takes the place of the suite; ``name`` is what a refusal calls the solver. ``identified`` sees
-    the solver's identity, ``begin`` and ``tick`` each check before and after, and ``left`` what the solver
-    left running.
-
+    its identity, ``begin`` and ``tick`` each check before and after, ``left`` what the solver left running.
     Raises `InputError` for a solver that cannot be loaded, LookupError for a glob that matches nothing.
     """
     chosen, results = select(globs, among), []

@@ -303,12 +303,12 @@ EXPECTED = "expected an array of real numbers, or Answer(pressure, converged) wi
 
 
 def ask(solver: SolverUnderTest, problem: ContactProblem) -> Answer:
-    """Return the claimed answer of a solver under test, checked; its pressures ``(M, M)`` (Pa) are an array.
+    """Return the claimed answer of a solver under test, checked; its pressures are an array of the gap's
+    shape.
 
     The solver gets a copy of the problem. Raises `Unsupported` where its abilities do not reach, or where it
-    says that it did not converge with coupling: a correct solver that lags friction may not. Raises
-    `BadAnswer` for an answer that cannot be judged or admits another failure, and every exception of the
-    solver.
+    says that it did not converge with coupling (one that lags friction may not), `BadAnswer` for an answer
+    that cannot be judged or admits another failure, and every exception of the solver.
     """
     lacking = abilities_of(solver).lacking(problem)
     if lacking:

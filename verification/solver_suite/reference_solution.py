@@ -1,8 +1,8 @@
 """Computations by which the suite judges: displacements, residuals, and solutions by elimination.
 
 None of it is shared with the solvers of `refimpl`. A half-space uses dense matrices of the textbook's corner
-differences up to `LARGEST` elements a side; beyond, the same numbers by scipy's convolution.
-A periodic problem uses the exact symbols of `verification.exact.fourier`.
+differences up to `LARGEST` elements a side, beyond convolution; periodic, the symbols of
+`verification.exact.fourier`.
 """
 
 from __future__ import annotations
@@ -139,15 +139,12 @@ def stores_no_energy(problem: ContactProblem) -> bool:
 def residual(problem: ContactProblem, pressure: Array) -> Residual:
     """Return the residuals of pressures (Pa) in the problem, recomputed from the pressures alone.
 
-    gap : ``sum f (v - level) dA`` over the elastic energy; the level is ``min v`` under a load, and the
-        approach where that is prescribed, with penetration counted on the whole load
+    gap : ``sum f (v - level) dA`` over the elastic energy; the level is ``min v`` under a load, else the
+        approach, with penetration counted on the whole load; with a hardness that of both bounds
     balance : ``|N - P| / P``, or zero
     tension : largest negative pressure, or excess over the hardness, over the largest positive one
 
-    With a hardness the gap is that of both bounds (`verification.solver_suite.protocol`).
-
-    Raises ValueError for pressures without any elastic energy, or without a finite one: there is no scale
-    to judge by.
+    Raises ValueError for pressures without any elastic energy, or without a finite one.
     """
     stored = energy(problem, pressure)
     v = displacement(problem, pressure) + problem.gap
@@ -246,16 +243,15 @@ def _on(problem: ContactProblem, matrix: Array, contact: Mask) -> tuple[Array, f
     return f, float(solved[-1]) * length
 
 
-def eliminated(problem: ContactProblem, limit: int = 100) -> Array:
+def eliminated(problem: ContactProblem) -> Array:
     """Return the solution (Pa) by block principal pivoting, for small problems without tau.
 
-    Starts from all elements in contact, or all that overlap at a prescribed approach; drops those in tension
-    and adds those that penetrate until there are none. Raises RuntimeError where that does not end within
-    ``limit`` rounds.
+    From all elements in contact, or all that overlap, drops those in tension and adds those that penetrate.
+    Raises RuntimeError where that does not end within 100 rounds.
     """
     matrix, gap, prescribed = _flexibility(problem), problem.gap.ravel(), problem.approach_from_touch
     contact = gap < (np.inf if prescribed is None else prescribed)
-    for _ in range(limit):
+    for _ in range(100):
         f, approach = _on(problem, matrix, contact)
         v = matrix @ f + gap
         slack = 1e-13 * max(float(np.abs(v).max()), abs(approach))
@@ -264,4 +260,4 @@ def eliminated(problem: ContactProblem, limit: int = 100) -> Array:
             return f.reshape(problem.gap.shape)
         # tension first: a set that is too large only loses elements, one by its worst penetration gains
         contact = contact & ~wrong_in if wrong_in.any() else contact | wrong_out
-    raise RuntimeError(f"no contact set found in {limit} rounds")
+    raise RuntimeError("no contact set found in 100 rounds")

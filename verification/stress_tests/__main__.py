@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+from verification.framework.threads import THREADS
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -27,9 +27,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     unknown = [name for name in options.axis if name not in AXES]
     if unknown:
         parser.error(f"--axis {unknown[0]!r}: expected one of {', '.join(AXES)}")
-    progress = Progress(sum(1 for name in options.axis or AXES for _ in states(name)))
-    found = study.document(study.run(options.axis, progress.tick))
-    progress.close()
+    with Progress(sum(1 for name in options.axis or AXES for _ in states(name))) as progress:
+        found = study.document(study.run(options.axis, progress.tick))
     write_result(found, options.json)
     print(", ".join(f"{number} {verdict}" for verdict, number in found["counts"].items()), file=sys.stdout)
     wrong = sum(count["wrong"] for count in found["lawful states"])

@@ -118,9 +118,8 @@ def change(solution: rf.Solution, other: rf.Solution) -> float:
 def exact_error(scene: rf.Scene, solution: rf.Solution, **options: Any) -> tuple[float, str]:
     """Return the largest relative error of a solution's pressure, approach, N and F; and a note.
 
-    Pressures relative to the peak, approaches to their size or, where that nearly vanishes, to the
-    displacement that one element's peak pressure makes; forces to N. A contact set that differs by elements
-    further than rounding from the edge of contact counts as an error of 1.
+    Pressures relative to the peak, approaches to their size or what one element's peak displaces, forces to
+    N. Elements in contact on one side alone, further than rounding from its edge, count as an error of 1.
     """
     oracle = Oracle(scene, len(solution.pressure), **options)
     if not solution.contact.any():

@@ -1,15 +1,11 @@
 """The discrete problem solved in 34 digits, started from the state under test (mpmath, tiny grids).
 
-Unknowns are one number an element (its pressure in contact, its gap elsewhere, so that Eq. (6) holds but for
-signs), the tangents of the common surface, and the approach. Newton's method solves Eqs (2), (6) and (7)
-together, and exchanges elements whose number is negative. The Jacobian is exact, by complex steps in doubles;
-residuals are taken in 34 digits at last, where every step leaves ten digits more. A state that is not reached
-from the one under test is sought by continuation in the load, in beta, and in tau.
-
-At fixed slopes and a fixed active set of tau the problem has one solution (`positive_definite`), so where the
-search starts cannot bend the answer. Where friction is strong, slopes may stand in several states: one that
-is right is one of these to the last digit, which does not prove it the only one. tau's active set is that of
-the returned traction; in a continuation it is the contact.
+Unknowns are one number an element (its pressure in contact, its gap elsewhere), the tangents of the common
+surface, and the approach. Newton's method solves Eqs (2), (6) and (7) together, and exchanges elements whose
+number is negative. The Jacobian is exact, by complex steps in doubles; residuals are taken in 34 digits at
+last. A state that is not reached from the one under test is sought by continuation in the load, in beta, and
+in tau. At fixed slopes and active set of tau there is one solution (`positive_definite`); where friction is
+strong, slopes may stand in several states: one that is right is not proved the only one.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ import os
 import threading
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import (
     CancelledError,
     Executor,
@@ -102,11 +102,10 @@ def sweep(
 ) -> Sweep:
     """Run the study's missing runs and keep each as it finishes.
 
-    ``workers`` processes, or with 0 this process itself, which then should have one BLAS thread;
-    ``scheduler`` is the address of a dask.distributed cluster to use instead. A run that raises is reported
-    in ``failures``, is not kept, and is tried again by the next sweep. Raises InputError for a store that
-    cannot be used or a scheduler that cannot serve, WorkersLost when a worker process was killed or the
-    scheduler is lost. A cluster that has lost its last worker is waited for.
+    ``workers`` processes, or with 0 this process, which should have one BLAS thread; ``scheduler`` is the
+    address of a dask.distributed cluster. A run that raises is in ``failures``, and is tried again by the
+    next sweep. Raises InputError for a store or a scheduler that cannot serve, WorkersLost when a worker
+    process was killed or the scheduler is lost; a cluster that lost its last worker is waited for.
     """
     started = time.perf_counter()
     # Points without roughness are the same run in every realisation, and are solved once.
@@ -120,8 +119,9 @@ def sweep(
         failures: dict[str, str] = {}
         if missing:
             executor = executor or stack.enter_context(_here(workers))
-            for run, done in _through(executor, missing):
-                failure = _failure(done)
+            waiting = {executor.submit(execute, run.inputs): run for run in missing}
+            for done in as_completed(waiting):
+                run, failure = waiting.pop(done), _failure(done)
                 if failure is None:
                     kept.add(run, *done.result())
                 else:
@@ -133,9 +133,6 @@ def sweep(
     return Sweep(found, len(missing) - len(failures), failures, rows, spent, time.perf_counter() - started)
 
 
-Done = Iterator[tuple[Run, "Future[tuple[Row, float]]"]]
-
-
 def _failure(done: Future[tuple[Row, float]]) -> BaseException | None:
     """Return what the run raised; raises WorkersLost where it is not the run's doing."""
     try:
@@ -145,12 +142,6 @@ def _failure(done: Future[tuple[Row, float]]) -> BaseException | None:
     if isinstance(failure, BrokenProcessPool):
         raise WorkersLost("a worker process died")
     return failure
-
-
-def _through(executor: Executor, runs: Iterable[Run]) -> Done:
-    waiting = {executor.submit(execute, run.inputs): run for run in runs}
-    for future in as_completed(waiting):
-        yield waiting.pop(future), future
 
 
 @contextmanager

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,6 +11,7 @@ from refimpl.errors import InputError
 from refimpl.scene.scene_file import FRICTION, MATERIAL, SCENE, SURFACES
 from refimpl.solution.quantities import QUANTITIES
 from verification.output.files import replacing, write_text
+from verification.output.text_table import csv_text
 from verification.sweep.run import Row
 from verification.sweep.store import COLUMNS
 
@@ -76,17 +75,13 @@ def _with_own_columns(rows: Sequence[Row]) -> tuple[list[Row], list[str]]:
 
 
 def to_csv(rows: Sequence[Row]) -> str:
-    """Return CSV text with a header; floats in their shortest exact form, None as an empty field.
+    """Return CSV text with a header, as `csv_text` writes it.
 
     >>> to_csv([]).split(",")[:3]
     ['key', 'realisation', 'grid']
     """
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
     rows, names = _with_own_columns(rows)
-    writer.writerow(map(header, names))
-    writer.writerows([row.get(name) for name in names] for row in rows)
-    return buffer.getvalue()
+    return csv_text([map(header, names), *([row.get(name) for name in names] for row in rows)])
 
 
 def write_csv(rows: Sequence[Row], path: Path) -> None:

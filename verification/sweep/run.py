@@ -102,11 +102,10 @@ def file_digest(path: Path) -> str:
 
 
 def execute(inputs: Mapping[str, Any]) -> tuple[Row, float]:
-    """Solve one run; the row of `OUTCOMES`, and the processor seconds it took.
+    """Solve one run, anywhere, on one thread; the row of `OUTCOMES`, and the processor seconds it took.
 
-    Runs anywhere: in this process, a worker, or on a cluster, on one thread. Raises RuntimeError where
-    another version of the code is installed than the one that the inputs name, and what `refimpl.solve`
-    raises.
+    Raises RuntimeError where another version of the code is installed than the inputs name, and what
+    `refimpl.solve` raises.
     """
     if inputs["code"] != code_digest():
         raise RuntimeError("this worker's refimpl differs from the one that planned the sweep")

@@ -1,11 +1,9 @@
 """Results kept in one SQLite file: a row per finished run, written at once or not at all.
 
-The journal is a write-ahead log, so that a run is either in the table or not after a kill at any moment, and
-others may read while a sweep writes. Two sweeps may share a store on one machine, not across a network file
-system, where SQLite cannot keep such a log. Of a run that both have begun the first one's row is kept.
-
-Damage is found before it is used: on opening, the file's structure, its schema and the checksum of every row
-are compared with what this module writes. A refusal deletes nothing: a new store may stay, without runs.
+The journal is a write-ahead log: a run is in the table or not after a kill at any moment, and others may read
+meanwhile. Two sweeps may share a store on one machine, not across a network file system; the first row of a
+run is kept. On opening, the file's structure, its schema and the checksum of every row are compared with what
+this module writes. A refusal deletes nothing.
 """
 
 from __future__ import annotations
@@ -94,8 +92,7 @@ def open_store(path: Path) -> Iterator[Store]:
     """Open or create a store for one sweep.
 
     Raises InputError for a file that is not a store, is damaged, cannot be written, has several names, or is
-    locked by another program; and in the block where SQLite cannot read or write it any more, or it is no
-    longer at its path.
+    locked; and in the block where SQLite cannot read or write it any more, or it is no longer at its path.
     """
     path = Path(os.path.realpath(path))
     _make(path)

@@ -26,18 +26,15 @@ Table = dict[str, Any]
 @dataclass(frozen=True)
 class Study:
     """A base scene and what varies. Bodies' random parts get the seeds ``first_seed + 2 k`` (upper) and
-    ``first_seed + 2 k + 1`` (lower) in realisation k, whatever else varies, so that roughnesses, loads and
-    directions are compared on the same surfaces; with a ``first_seed`` of None they keep the scene's.
+    ``first_seed + 2 k + 1`` (lower) in realisation k, so that all points are compared on the same surfaces;
+    with a ``first_seed`` of None they keep the scene's.
 
-    ``vary`` maps names of `AXES`, and of `refimpl.scene.parameters` of surfaces (``lower.surface[0].hurst``,
-    counted in the base scene) and materials (``lower.material.E``), to their values (SI, rad); an rms
-    of 0 leaves that body's roughness out. Measured surfaces have their files to vary
-    (``lower.surface[0].path``). A varied ``seed`` takes the place of the realisation's.
-    Realisations are of random roughness: where a point has none left, they are all one and the same run.
-    ``normalise`` overrides that of the base scene's Gaussian parts unless None. ``settings`` go to
-    `refimpl.solve`. ``files`` are those that the study was read from: its own, its scene's, its surfaces'.
-    ``notes`` say what was chosen for it. ``unusable`` has, by axis and path, the reasons for
-    varied files that were refused. ``grid`` counts elements along the longer side of a rectangle.
+    ``vary`` maps names of `AXES`, and full names (``lower.surface[0].hurst``, ``lower.material.E``, of
+    measured surfaces ``lower.surface[0].path``), to values (SI, rad); an rms of 0 leaves that body's
+    roughness out, and a varied ``seed`` takes the place of the realisation's. Where a point has no random
+    roughness left, realisations are one and the same run. ``normalise`` overrides that of Gaussian parts
+    unless None. ``settings`` go to `refimpl.solve`. ``files`` are those that the study was read from;
+    ``notes`` say what was chosen for it; ``unusable`` has, by axis and path, why varied files were refused.
     """
 
     scene: Table

@@ -20,9 +20,10 @@ from tests.documents import ROOT
 from tests.reports import sample
 from tests.verification.cli.commands import Stream, answer, run, shown
 from verification.cli import main, parser, solve, verify
-from verification.cli.output import StatusLine, judgement
+from verification.cli.output import judgement
 from verification.framework import registry, runner
 from verification.framework.case import Case, Measured, Metric, Status, Tier
+from verification.output.files import StatusLine
 from verification.output.text_table import WIDTH, columns
 
 QUICK = "kernels/love-at-centre"

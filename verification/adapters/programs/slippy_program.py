@@ -1,9 +1,8 @@
 """SlipPY 0.5.2 as a program: `PYTHON slippy_program.py DIRECTORY`, by files as in docs/the-suites-problem.md.
 
-SlipPY requires numpy below 1.21, hence Python 3.9 at most, so it has an interpreter of its own and this file
-imports nothing of this package. Its Polonsky-Keer solver gets the influence matrix that SlipPY defines in
-space where the half-space is free (``use_frequency_domain=False``; its default, the frequency domain with a
-zero frequency set from the sum, is that of a periodic half-space), and the one by frequencies where periodic.
+It has an interpreter of its own (see `verification.adapters.slippy`), so this file imports nothing of this
+package. The Polonsky-Keer solver gets the influence matrix in space where the half-space is free
+(``use_frequency_domain=False``; its default is that of a periodic one), else the one by frequencies.
 """
 
 import contextlib

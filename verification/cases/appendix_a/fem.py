@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from appendix_a.fem import mixed
 from appendix_a.fem.axisymmetric import body_on, circular_patch
@@ -14,11 +13,11 @@ from appendix_a.fem.geometry import Boundary, flat, sinusoid_boundary
 from appendix_a.fem.halfplane import pressed_strip
 from appendix_a.fem.mesh import Source
 from appendix_a.fem.sinusoid import departures, setup_for
+from refimpl.grid import Array
 from verification.cases import Measured, case
 from verification.exact.rational_bump import RationalBump
 from verification.framework.rates import fit_order
 
-Array = NDArray[np.float64]
 NEIGHBOURS = np.array([-20.0, -10.0, -6.0, -4.0, -2.0, 2.0, 4.0, 6.0, 10.0, 20.0])
 ENDS = (Source(-1.0, -1.0, 2.0**-7, 1.0), Source(1.0, 1.0, 2.0**-7, 1.0))
 POINTS = 0.02  # percentage points of the flat coefficient

@@ -7,7 +7,6 @@ from importlib.resources import as_file, files
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from appendix_a.fem3d.coefficients import LABELS, Coefficients3D, coefficients, corrected
 from appendix_a.fem3d.leading_order import first_order
@@ -15,9 +14,9 @@ from appendix_a.fem3d.patch import normal_coefficient, tilted_plane
 from appendix_a.fem3d.surface import X, Y, flat_sample, sample
 from appendix_a.fem3d.table import Series, Table3D
 from appendix_a.fem3d.wavy import Kind, Waviness
+from refimpl.grid import Array
 from verification.cases import Measured, case
 
-Array = NDArray[np.float64]
 NU, WAVELENGTH, SLOPE = 0.3, 20.0, 10.0
 FLANK = 0.25
 LEVELS = (1, 2, 3)
@@ -113,11 +112,11 @@ def ridge(slope: float, position: float = FLANK) -> Waviness:
     return Waviness(slope, WAVELENGTH, position)
 
 
-def odd_part(surface: Waviness, nu: float, level: int = 2) -> Array:
-    """Return half the difference (10,) between a slope and its opposite, over flat, less 1/R^2."""
+def odd_part(surface: Waviness, nu: float) -> Array:
+    """Return half the difference (10,) between a slope and its opposite, over flat, less 1/R^2; level 2."""
     opposite = Waviness(-surface.slope_deg, surface.wavelength, surface.position, surface.kind)
     near, far = (
-        0.5 * (sample(surface, nu, radius, level).down - sample(opposite, nu, radius, level).down)
+        0.5 * (sample(surface, nu, radius, 2).down - sample(opposite, nu, radius, 2).down)
         for radius in (30.0, 60.0)
     )
     return (far + (far - near) / 3) / normal_coefficient(X, Y, nu)

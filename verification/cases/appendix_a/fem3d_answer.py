@@ -7,17 +7,16 @@ percentage points.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from appendix_a.fem3d.leading_order import first_order
 from appendix_a.fem3d.patch import normal_coefficient
 from appendix_a.fem3d.surface import X, Y
 from appendix_a.fem3d.table import Series, equivalent_slope, slope_of
 from appendix_a.fem3d.wavy import Waviness
+from refimpl.grid import Array
 from verification.cases import Measured, Verdict, case, judged
 from verification.cases.appendix_a.fem3d import FLANK, NU, SOURCE, WAVELENGTH, shipped
 
-Array = NDArray[np.float64]
 COPPER, STEEL = (118e9, 0.3), (200e9, 0.3)
 PLACES = {"crest": 0.0, "flank": FLANK, "valley": 0.5}
 RATIOS = (0.0, 0.3, 0.45)

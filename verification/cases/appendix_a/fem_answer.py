@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from appendix_a.fem.axisymmetric import asperity
 from appendix_a.fem.departure import departure
@@ -15,10 +14,10 @@ from appendix_a.fem.sinusoid import departures, setup_for
 from appendix_a.fem.wedge_fem import wedge_tip
 from appendix_a.leading_order import facet_prediction, first_order
 from appendix_a.wedge_tip import relative_difference
+from refimpl.grid import Array
 from verification.cases import Measured, Verdict, case, judged
 from verification.cases.appendix_a.fem import NEIGHBOURS, POINTS, POINTS_REASON, percent  # noqa: F401  # in docstrings
 
-Array = NDArray[np.float64]
 CURVE = np.array([x for x in np.linspace(-12.0, 12.0, 49) if x != 0.0])
 TIP = np.array([2.0, 3.0, 6.0, 12.0])  # offsets at which a tip is distinguished
 

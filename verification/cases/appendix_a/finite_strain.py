@@ -22,9 +22,9 @@ from skfem.helpers import ddot, grad, trace
 from appendix_a.contact_fem.bodies import MeshPlan, wave_height
 from appendix_a.contact_fem.scene import WAVENUMBER
 from appendix_a.fem.elasticity import lame
+from refimpl.grid import Array
 from verification.exact.westergaard import Wave
 
-Array = NDArray[np.float64]
 DEPTH = 1.5
 PLAN = MeshPlan(64, 0.45, 1, depth=DEPTH)
 TOLERANCE = 1e-10  # largest change of a displacement over the amplitude, between Newton steps

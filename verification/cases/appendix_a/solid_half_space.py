@@ -1,9 +1,7 @@
 """Pairs of asperities in three dimensions: by finite elements, as a scene, and the half-space's stated error.
 
-The asperities are bumps amplitude (cos k x + cos k y) whose crests lie a shift apart along sliding. Meshes
-put six to ten elements across the contact. Both sides are therefore taken relative to themselves at a
-vanishing slope, on the same mesh or grid and with the same share of p*. The area, by whole nodes, is not
-judged.
+Bumps amplitude (cos k x + cos k y) whose crests lie a shift apart. Six to ten elements across the contact, so
+both sides are taken relative to themselves at a vanishing slope. The area, by whole nodes, is not judged.
 """
 
 from __future__ import annotations

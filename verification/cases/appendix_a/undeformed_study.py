@@ -1,8 +1,7 @@
 """Contacts of wavy and rough profiles by finite elements, for the half-space's error in the plane.
 
-A contact is drawn from a seed: slopes from 1 to 20 degrees, crest on crest, crest on a flat, flanks that
-climb and descend, and profiles of three waves; pairs from equal to rigid on soft. One seed served to build
-the estimate of `refimpl.half_space.model_form`, others judge it.
+A contact is drawn from a seed: slopes from 1 to 20 degrees, crests, flanks, three waves; pairs from equal to
+rigid on soft. One seed served to build the estimate of `refimpl.half_space.model_form`, others judge it.
 """
 
 from __future__ import annotations
@@ -11,17 +10,16 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 import refimpl as rf
 from appendix_a.contact_fem.bodies import Harmonics, MeshPlan, wave_height, wavy_surface
 from appendix_a.contact_fem.contact import Contact, Friction, press
 from appendix_a.contact_fem.ends import contact_ends
 from appendix_a.contact_fem.scene import WAVENUMBER, Material
+from refimpl.grid import Array
 from refimpl.half_space.model_form import FINITE_STRAIN, SECOND_ORDER, steepness
 from refimpl.sensitivities.half_space import half_space_error
 
-Array = NDArray[np.float64]
 BUILT_FROM, JUDGED_ON, WARNED_ON = 39, 40, 41
 """Seeds: of the constants; of the statements' judgement; of the warning's, whose rest was set after a look at
 the second."""

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from appendix_a import wedge, wedge_tip
 from appendix_a.strip import field
+from refimpl.grid import Array
 from verification.cases import Measured, case
-
-Array = NDArray[np.float64]
 
 
 def uniform(r: float, theta: Array, gamma: float) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.model.materials import Pair
-from verification.cases import Measured, case
+from verification.cases import Measured, case, certified
 from verification.cases.contact.capped import rough_scene, with_hardness
 from verification.exact.capped_sphere import Capped, capped_sphere, plastic_limit
 from verification.exact.hertz import Sphere
@@ -36,9 +36,7 @@ def sphere_scene(hardness: float, load: float = LOAD) -> rf.Scene:
 def pair(share: float, grid: int) -> tuple[rf.Solution, Capped]:
     """Return our solution and that of rings at a hardness of this share of Hertz' maximum pressure."""
     hardness = share * SPHERE.peak_pressure
-    found = rf.solve(sphere_scene(hardness), grid, plastic=True)
-    if not found.converged:
-        raise RuntimeError(f"{found.status.value} at {share:g} of the maximum pressure")
+    found = certified(rf.solve(sphere_scene(hardness), grid, plastic=True))
     return found, capped_sphere(SPHERE, hardness, RINGS)
 
 

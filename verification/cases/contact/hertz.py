@@ -10,7 +10,7 @@ import numpy as np
 
 import refimpl as rf
 from refimpl.grid import Array
-from verification.cases import Measured, case, family
+from verification.cases import Measured, case, certified, family
 from verification.exact.hertz import UNCERTAINTY, Sphere
 from verification.framework.rates import fit_order
 
@@ -30,10 +30,8 @@ def solved(M: int, x: float = 0.0, y: float = 0.0) -> rf.Solution:
     h = SCENE.lengths[0] / M
     offset = (2 * np.arange(M) + 1 - M) * (h / 2)
     ball = ((offset - x * h)[:, None] ** 2 + (offset - y * h)[None, :] ** 2) / (2 * RADIUS)
-    solution = rf.solve(replace(SCENE, upper=rf.Body(SCENE.upper.material, ball)), M)
-    if solution.status is not rf.Status.CONVERGED:
-        raise RuntimeError(f"ended {solution.status.value} on {M} x {M} elements")
-    return solution
+    scene = replace(SCENE, upper=rf.Body(SCENE.upper.material, ball))
+    return certified(rf.solve(scene, M), cycled=False)
 
 
 def distance(M: int) -> Array:

@@ -7,8 +7,9 @@ from itertools import pairwise
 import numpy as np
 
 import refimpl as rf
+from refimpl.grid import Array
 from verification.cases import Measured, case
-from verification.cases.contact.scenes import MODULUS, Array, press
+from verification.cases.contact.scenes import MODULUS, press
 from verification.exact import greenwood_tripp, rough_plane
 from verification.exact.greenwood_tripp import RoughSphere, gaussian_summits
 from verification.solver_suite.gaps import centres, waves

@@ -1,11 +1,9 @@
 """Contact of self-affine surfaces: other codes on the same heights, and the area-load slope kappa.
 
-``kappa = (A / A0) E* h' / p``, h' the rms of |grad h|; `verification.exact.rough_plane` has published values.
-Theories do not depend on the spectrum. Of simulations, Prodanov, Dapp and Mueser 2014 (Tribol. Lett. 53, 433)
-find hardly any influence of the Hurst exponent; Yastrebov, Anciaux and Molinari 2017 (J. Mech. Phys. Solids
-107, 469) find that the perimeter-corrected area at a given pressure falls with the logarithm of Nayak's
-parameter, and that the Hurst exponent enters by it; Mueser and Wang 2020 (Front. Mech. Eng. 6, 59) find no
-such correlation over other classes of surfaces.
+``kappa = (A / A0) E* h' / p``, h' the rms of |grad h| (`verification.exact.rough_plane`). Of simulations,
+Prodanov, Dapp and Mueser 2014 (Tribol. Lett. 53, 433) find hardly any influence of the Hurst exponent;
+Yastrebov, Anciaux and Molinari 2017 (J. Mech. Phys. Solids 107, 469) that the area falls with the logarithm
+of Nayak's parameter; Mueser and Wang 2020 (Front. Mech. Eng. 6, 59) no such correlation.
 """
 
 from __future__ import annotations
@@ -20,7 +18,7 @@ import refimpl as rf
 from refimpl.grid import Array, Grid
 from verification.adapters import contactmechanics, tamaas
 from verification.adapters.published_code import PublishedCode
-from verification.cases import Measured, case, family
+from verification.cases import Measured, case, certified, family
 from verification.exact import rough_plane
 from verification.solver_suite.protocol import ContactProblem
 
@@ -34,10 +32,7 @@ def pressed(
     """Press a flat on the surface, without friction and slope terms."""
     bodies = rf.Body(SPLIT, rf.Flat()), rf.Body(SPLIT, surface)
     scene = rf.Scene(*bodies, rf.Friction(), load, SIDE, periodic=periodic)
-    solution = rf.solve(scene, grid=M, oblique=False, tolerance=tolerance)
-    if solution.status is not rf.Status.CONVERGED:
-        raise RuntimeError(f"the solver ended {solution.status.value} on {M} x {M} elements")
-    return solution
+    return certified(rf.solve(scene, grid=M, oblique=False, tolerance=tolerance), cycled=False)
 
 
 @family(

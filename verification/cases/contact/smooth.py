@@ -7,9 +7,10 @@ from collections.abc import Callable
 import numpy as np
 
 import refimpl as rf
+from refimpl.grid import Array
 from refimpl.operators.fft import FFTInfluence
 from verification.cases import Measured, case, family
-from verification.cases.contact.scenes import MODULUS, Array, measured_order, press
+from verification.cases.contact.scenes import MODULUS, measured_order, press
 from verification.exact.hertz import Ellipse
 from verification.exact.patch import UNCERTAINTY as PATCH_UNCERTAINTY
 from verification.exact.patch import Patch

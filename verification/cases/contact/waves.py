@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 import refimpl as rf
+from refimpl.grid import Array
 from refimpl.model.friction import is_frictionless
 from verification.cases import Measured, case
-from verification.cases.contact.scenes import COUPLING, MODULUS, Array, first_contact_approach, press
+from verification.cases.contact.scenes import COUPLING, MODULUS, first_contact_approach, press
 from verification.exact import fourier, jgh
 from verification.exact.westergaard import Wave
 from verification.solver_suite.gaps import centres

@@ -8,8 +8,8 @@ from typing import Any
 
 import mpmath as mp
 import numpy as np
-from numpy.typing import NDArray
 
+from refimpl.grid import Array
 from refimpl.kernels import normal_integral, normal_table, tangential_integral, tangential_table
 from refimpl.kernels.cerruti import CERRUTI
 from refimpl.kernels.love import LOVE
@@ -150,8 +150,6 @@ def table_accuracy() -> Measured:
             )
     return Measured(value=max(errors.values()), data=errors, note=f"{len(indices)} entries of each")
 
-
-Array = NDArray[np.float64]
 
 EPS = float(np.finfo(np.float64).eps)
 

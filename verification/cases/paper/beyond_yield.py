@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from verification.cases import Measured, Verdict, judged
+from verification.cases import Measured, Verdict, judged, percents
 from verification.reproduction.beyond_yield import LOWEST, MODELS, Point, cells, crossing, points
 from verification.reproduction.printed import HARDNESS, LOADS, TABLE3
 from verification.reproduction.tiers import in_both_tiers
@@ -47,8 +47,9 @@ def _over(tier: str, name: str, by_load: dict[float, list[float]]) -> dict[str, 
     return data | {f"{name}, {load:g} N": values for load, values in by_load.items()}
 
 
-def _percent(numbers: list[float], digits: int = 1) -> str:
-    return ", ".join(f"{number:.{digits}%}" for number in numbers)
+def _above_lowest(point: Point) -> float:
+    """Return the mean of mu over Eq. (11), less 1."""
+    return point.mean("capped", "friction").mean / LOWEST - 1
 
 
 @in_both_tiers("reproduction/eq11-capped-bound", metric="at_least", tolerance=-1e-7, source=SOURCE)
@@ -68,7 +69,7 @@ def lower_bound(tier: str) -> Measured:
     sentence = (
         f"none of {len(found) * len(found[0].found['flat'])} solutions without slope terms has mu below "
         f"{LOWEST:.5f}; at psi = {last[0].psi:.1f} ({LOADS_IN_WORDS}) mu is above it by "
-        f"{_percent(nearest)}, the mean pressure is {_percent(pressure, 0)} of H and {_percent(share, 0)} of "
+        f"{percents(nearest)}, the mean pressure is {percents(pressure, 0)} of H and {percents(share, 0)} of "
         "the contact is plastic"
     )
     return judged(Verdict.CONFIRMED, sentence, least, data=_series(tier))
@@ -82,30 +83,18 @@ def estimate(tier: str) -> Measured:
     Tolerance: largest mean of mu over Eq. (11), less 1, where psi > 1: measured 14 % quick and full; three
     realisations scatter by 2 %
     """
-    errors = {
-        load: [p.mean("capped", "friction").mean / LOWEST - 1 for p in curve]
-        for load, curve in _by_load(tier).items()
-    }
     curves = _by_load(tier)
-    beyond = [
-        error
-        for load, curve in curves.items()
-        for p, error in zip(curve, errors[load], strict=True)
-        if p.psi > 1
-    ]
-    from_psi = {
-        level: [crossing(curve, errors[load], level) for load, curve in curves.items()]
-        for level in (0.05, 0.02)
-    }
-    reached = "; ".join(
-        f"within {level:.0%} from psi = "
-        + ", ".join("beyond the range" if np.isnan(p) else f"{p:.1f}" for p in found)
-        for level, found in from_psi.items()
-    )
+    errors = {load: [_above_lowest(p) for p in curve] for load, curve in curves.items()}
+    beyond = [_above_lowest(p) for p in points(tier) if p.psi > 1]
+    reached = []
+    for level in (0.05, 0.02):
+        found = (crossing(curve, errors[load], level) for load, curve in curves.items())
+        shown = ("beyond the range" if np.isnan(p) else f"{p:.1f}" for p in found)
+        reached.append(f"within {level:.0%} from psi = {', '.join(shown)}")
     at_one = [float(np.interp(1.0, [p.psi for p in curve], errors[load])) for load, curve in curves.items()]
     sentence = (
-        f"at psi = 1 mu is above Eq. (11) by {_percent(at_one)} ({LOADS_IN_WORDS}); {reached}. It is the "
-        "limit of rough surfaces, not the value at the threshold"
+        f"at psi = 1 mu is above Eq. (11) by {percents(at_one)} ({LOADS_IN_WORDS}); {'; '.join(reached)}. It "
+        "is the limit of rough surfaces, not the value at the threshold"
     )
     data = _over(tier, "mu / Eq. (11) - 1", errors)
     return judged(Verdict.CONDITIONAL, sentence, max(beyond), data=data)
@@ -130,7 +119,7 @@ def slopes(tier: str) -> Measured:
     last = [s[-1] for s in scatter.values()]
     sentence = (
         f"slopes change mu by {largest:.1%} at most, on average by {', '.join(f'{m:+.2%}' for m in means)} "
-        f"({LOADS_IN_WORDS}), with a scatter of {_percent(last)} at psi = {found[-1].psi:.1f}; they take mu "
+        f"({LOADS_IN_WORDS}), with a scatter of {percents(last)} at psi = {found[-1].psi:.1f}; they take mu "
         f"below Eq. (11) in {below} of {len(found) * len(found[0].found['capped'])} solutions, "
         f"by {max(0.0, -depth):.1%} at most"
     )
@@ -155,7 +144,7 @@ def table3(tier: str) -> Measured:
         f"at {rms} um the elastic mu errs by {', '.join(f'{e.mean:+.1%}' for e in mu)} and A by "
         f"{', '.join(f'{e.mean:+.0%}' for e in area)}; capped, mu is "
         f"{', '.join(f'{e.mean:.4f}' for e in capped['friction'])}, and "
-        f"{_percent([e.mean for e in capped['plastic_share']], 0)} of the contact is plastic"
+        f"{percents([e.mean for e in capped['plastic_share']], 0)} of the contact is plastic"
     )
     data: dict[str, object] = {
         "sigma_e (um)": [p.rms * 1e6 for p in found],

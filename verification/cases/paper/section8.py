@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from verification.cases import Measured, Verdict, judged
+from verification.cases import Measured, Verdict, judged, percents
 from verification.reproduction import fig8
 from verification.reproduction.ensemble import column, estimate, rows_at
 from verification.reproduction.printed import CRITICAL_RMS, LOADS, RESOLUTION, TABLE3
@@ -129,7 +129,7 @@ def without_beta(tier: str) -> Measured:
     mu = [estimate(column(found, "friction_coefficient", lower_rms=flat)).scatter for flat in ROUGH]
     worst = float(np.max(np.abs(np.array(mu) / np.array(area) - 1)))
     sentence = (
-        f"A scatters by {_percent(area)}, mu by {_percent(mu)}: the same but for {worst:.1%}; "
+        f"A scatters by {percents(area)}, mu by {percents(mu)}: the same but for {worst:.1%}; "
         "printed 7.5 % for both"
     )
     data = {
@@ -138,7 +138,3 @@ def without_beta(tier: str) -> Measured:
         "scatter of mu": mu,
     }
     return judged(Verdict.CONDITIONAL, sentence, worst, data=data)
-
-
-def _percent(shares: list[float]) -> str:
-    return ", ".join(f"{share:.1%}" for share in shares)

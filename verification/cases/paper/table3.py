@@ -9,7 +9,7 @@ import numpy as np
 import refimpl as rf
 from refimpl.grid import Array
 from refimpl.model.friction import friction_coefficient_at
-from verification.cases import Measured, Verdict, case, family, judged
+from verification.cases import Measured, Verdict, case, family, judged, percents
 from verification.reproduction import table3
 from verification.reproduction.ensemble import QUICK_MESH, Estimate, column, estimate, rows_at
 from verification.reproduction.printed import (
@@ -103,7 +103,7 @@ def scatter(tier: str) -> Measured:
     ]
     both = sum(map(all, zip(*met, strict=True)))
     sentence = (
-        f"mu scatters by {_percent(mu)} (0.504, 1.008, 1.68 um) where A does by {_percent(area)}; "
+        f"mu scatters by {percents(mu)} (0.504, 1.008, 1.68 um) where A does by {percents(area)}; "
         f"{FRICTION_FLUCTUATION:.1%} and {AREA_FLUCTUATION:.1%} within u at {both} roughnesses together; "
         f"less than A, as Eq. (10) implies, to {worst:.0%} of mu's scatter"
     )
@@ -135,7 +135,7 @@ def area_scatter(tier: str) -> Measured:
     nearest = min(abs(s / AREA_FLUCTUATION - 1) for s in scatter)
     known = 2 / math.sqrt(2 * area[0].n - 2)
     sentence = (
-        f"A scatters by {_percent(scatter)} (0.504, 1.008, 1.68 um), each known to {known:.0%} of itself"
+        f"A scatters by {percents(scatter)} (0.504, 1.008, 1.68 um), each known to {known:.0%} of itself"
     )
     data = {"sigma_e (um)": [c.equivalent_rms * 1e6 for c in TABLE3[1:]], "scatter of A": scatter}
     met = sum(_reaches(a, AREA_FLUCTUATION) for a in area)
@@ -195,10 +195,6 @@ def equation11(tier: str) -> Measured:
         "Eq. (11)": friction_coefficient_at(SMOOTH.friction, HARDNESS),
     }
     return judged(Verdict.REFUTED, sentence, ratio[-1], data=data)
-
-
-def _percent(shares: list[float]) -> str:
-    return ", ".join(f"{share:.1%}" for share in shares)
 
 
 @case("reproduction/table3-digits", metric="at_least", tolerance=2.0)

@@ -1,7 +1,6 @@
 """Discrete problems whose exact answer is known beforehand: the pressures are chosen, the gap follows.
 
-Each counts the squared error in the energy norm in units of the residual that the solver claims, so a lax
-claim and a strict one are held to the same bound (`reference_solution.misfit`).
+The squared error in the energy norm counts in units of the claim (`reference_solution.misfit`).
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """Independence of earlier problems: problems in turn that differ in one parameter at a time.
 
-Codes keep transforms of their kernels, or whole answers, and may forget what these were made for. Each answer
-is judged by itself, so that what is wrong in all of them shows as well. (c0 and the direction are changed in
-the sliding arrays of pins.) Sixteen elements a side at most: a solver of small problems is judged too.
+Codes keep transforms of their kernels, or whole answers, and may forget what these were made for. Sixteen
+elements a side at most. (c0 and the direction are changed in the sliding arrays of pins.)
 """
 
 from __future__ import annotations

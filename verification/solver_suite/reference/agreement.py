@@ -2,8 +2,7 @@
 
     python -m verification.solver_suite.reference.agreement DIR [NAME-GLOB ...]
 
-Equal versions on one machine write equal bytes. Elsewhere arithmetic differs in the last digits, and the new
-pressures must lie within the sum of both proven bounds.
+Elsewhere arithmetic differs in the last digits: new pressures must lie within the sum of both proven bounds.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """Certified pressures of a problem: solved far beyond the suite's claim, with proven bounds on their errors.
 
-The solver's own proof is `refimpl.bounds.proven_bounds`; at a prescribed periodic approach, of which
-it proves nothing, `periodic_bound`. The residual beside them is recomputed by `reference_solution`, which
-shares nothing with the solver.
+The solver's own proof is `refimpl.bounds.proven_bounds`, at a periodic approach `periodic_bound`. The
+residual beside them is recomputed by `reference_solution`, which shares nothing with the solver.
 """
 
 from __future__ import annotations

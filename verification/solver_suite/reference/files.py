@@ -6,9 +6,7 @@ The data's version is the SHA-256 of the file of checksums, so that it names the
 
 from __future__ import annotations
 
-import csv
 import hashlib
-import io
 import json
 import shutil
 import tempfile
@@ -21,6 +19,7 @@ import numpy as np
 
 from refimpl.errors import InputError
 from verification.output.provenance import DISTRIBUTION, ROOT, versions
+from verification.output.text_table import csv_text
 from verification.solver_suite import suite
 from verification.solver_suite.command import header_of
 from verification.solver_suite.reference import certified
@@ -135,15 +134,13 @@ def _numbers(found: Certified) -> dict[str, Any]:
 
 
 def _table(entries: Iterable[Mapping[str, Any]]) -> str:
-    rows = io.StringIO()
-    writer = csv.writer(rows, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    rows: list[Iterable[object]] = [COLUMNS]
     for entry in entries:
         problem, answer = entry["problem"], entry["answer"]
         numbers = [*problem["shape"], *problem["lengths"], *(problem[name] for name in COLUMNS[5:15])]
         bounds = [answer["bounds"][name] for name in ("pressure", "approach", "load")]
-        writer.writerow([entry["name"], *numbers, answer["approach"], answer["load"], *bounds])
-    return rows.getvalue()
+        rows.append([entry["name"], *numbers, answer["approach"], answer["load"], *bounds])
+    return csv_text(rows)
 
 
 def checksums(folder: Path) -> dict[str, str]:

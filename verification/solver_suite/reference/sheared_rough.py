@@ -4,8 +4,7 @@
 
 writes `sheared_rough.json.gz`: a ball on a rough flat of 24 x 24 elements, once with a settled contact edge,
 once with an alternating one (`CYCLED`). No code of others has friction with tau on slopes, so the answer is
-that of the dense program of one file, `refimpl/plain.py`, of the same authors as the production solver. Its
-rule for elements without tau decides where the edge alternates; the other numbers follow from the active set.
+that of `refimpl/plain.py`, whose rule for tau decides where the edge alternates.
 """
 
 from __future__ import annotations
