@@ -24,7 +24,6 @@ class _Fields(Numbers):
 
     pressure: Array = part("details.state")
     traction: Array = part("details.state")
-    contact: Mask = part("details.state")
     slopes: Slopes = part("details.state")
     certificate: Certificate = part("details.state")
     surfaces: tuple[Array, Array] = part("details.evidence")
@@ -64,6 +63,11 @@ class Record(_Fields):
         """Depth w_p by which the softer body has yielded (m)."""
         indentation = self.details.state.indentation
         return read_only(self.grid.zeros if indentation is None else indentation)
+
+    @property
+    def contact(self) -> Mask:
+        """Elements with ``f > 0``."""
+        return self.pressure > 0
 
     @property
     def converged(self) -> bool:
