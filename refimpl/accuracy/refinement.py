@@ -87,7 +87,7 @@ def refine_until(
             hopeless = too_fine(results, accuracy, quantity, least, max(remaining))
         aim = max(accuracy, AIM * least) if hopeless else accuracy
         useful = [M for M in remaining if not hopeless or data.finest >= M]
-        if hopeless and (bound <= aim or not useful or too_fine(results, aim, quantity, least, max(useful))):
+        if hopeless and (bound <= aim or not useful or too_fine(results, aim, quantity, 0.0, max(useful))):
             return Refinement(tuple(results), hopeless)
         if not useful:
             return Refinement(tuple(results), refusal or f"at most {last} elements a side are tried")
