@@ -85,7 +85,10 @@ class Overrides:
     ) -> tuple[str, tuple[float, float], tuple[str, ...]]:
         """Return unit, pixel and notes, from what the file states (None: nothing). Raises `InputError`."""
         if (self.unit or unit) is None or (self.pixel_size or pixel) is None:
-            raise InputError("unit, pixel_size", (self.unit, self.pixel_size), f"both: {name} {what}")
+            example = "for example --unit um --pixel-size 1e-6; in a scene unit and pixel_size"
+            raise InputError(
+                "unit, pixel_size", (self.unit, self.pixel_size), f"both: {name} {what}; {example}"
+            )
         notes = []
         if self.unit is not None and unit is not None and UNITS[self.unit] != UNITS[unit]:
             notes.append(f"unit {self.unit!r} is used; the file states {ASCII.get(unit, unit)!r}")

@@ -114,7 +114,9 @@ def test_a_gwyddion_field_without_a_unit_takes_the_given_one(
         with pytest.raises(InputError, match="a map of heights"):
             read(path, **BOTH)
         return
-    with pytest.raises(InputError, match=r"both: a\.gwy does not state them"):
+    with pytest.raises(
+        InputError, match=r"both: a\.gwy does not state them; for example --unit um --pixel-size 1e-6"
+    ):
         read(path, unit="um")
     found = read(path, **BOTH)
     same(found.heights / 1e-6)
