@@ -37,7 +37,7 @@ for axes, start, stop, colour, at, text in (
     (side, (-0.4, 90), (-1, 90), ORANGE, (-1.05, 110), "F on the upper"),
     (side, (0, -170), (0.9, -170), BLUE, (0, -150), "F on the lower body"),
     (side, (0, 170), (0, 20), "k", (0.04, 120), "load P"),
-    (side, (0.42, -62), (0.7, 10), "k", (0.6, -75), "theta_x > 0: uphill"),
+    (side, (0.42, -62), (0.7, 10), "k", (0.62, -100), "theta_x > 0: uphill"),
 ):
     axes.annotate("", stop, start, arrowprops={"arrowstyle": "-|>", "lw": 1.8, "color": colour})
     axes.annotate(text, at)

@@ -28,7 +28,6 @@ for share in SHARES:
 
 figure, axes = plt.subplots(figsize=(5.2, 3.4), layout="constrained")
 axes.plot(SHARES, excess, "o-")
-axes.set(xlabel="contact radius over ball radius, a / R", ylabel="excess of p_max (%)")
-axes.set_title("p_max with slope terms over oblique=False", fontsize=11)
+axes.set(xlabel="contact radius over ball radius, a / R", ylabel="excess of p_max by slope terms (%)")
 axes.grid(alpha=0.3)
 figure.savefig(PICTURE, dpi=100)

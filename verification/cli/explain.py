@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 
 def explained(options: Options, plan: Plan, scene: str, expected: Forecast | None = None) -> str:
     """Return the plan as a table of at most 100 columns, the contact that is expected, and the forecast."""
-    demand = f"requested accuracy: {plan.demand:.2g}; neglected terms may add up to {plan.budget:.2g}"
+    demand = (
+        f"requested relative accuracy: {plan.demand:.2g}; neglected terms may add up to {plan.budget:.2g}"
+    )
     rows = [["term", "", "change of mu", "of A", "why"], *(_row(term) for term in plan.terms)]
     size = "refined" if options.grid is None else f"{plan.grid} elements"
     solved = "nothing is solved"
