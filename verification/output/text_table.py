@@ -27,7 +27,7 @@ def columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
 
 
 def markdown_row(cells: Iterable[str]) -> str:
-    """Return a row of a table in Markdown.
+    r"""Return a row of a table in Markdown.
 
     >>> markdown_row(["a|b", "c"])
     '| a\\|b | c |'
