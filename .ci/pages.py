@@ -16,7 +16,7 @@ from verification.cli import keys, parser
 
 OUT = Path("out/pages")
 PACKAGES = ("refimpl", "appendix_a", *(f"verification/{x}" for x in ("framework", "solver_suite", "sweep")))
-SOURCE = re.compile(r"(?<=\]\()([\w./-]+\.(?:py|sh|cff))(?=\))")
+SOURCE = re.compile(r"(?<=\]\()([\w./-]+\.(?:py|sh|cff|toml))(?=\))")
 FIRST = ("solve", "Scene", "Solution", "Body", "Material", "Friction", "read_scene")  # what users call
 LAST = "---\nsearch: {boost: 5e-4}\n---\n\n"  # in search results, where titles count 1000 times
 NAMED = re.compile(r"^```(\w+) (\S+)$", flags=re.M)

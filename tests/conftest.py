@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import importlib
 from contextlib import suppress
 from pathlib import Path
@@ -20,6 +21,14 @@ hypothesis.settings.load_profile("unhurried")
 ApproxScalar.DEFAULT_ABSOLUTE_TOLERANCE = 0.0
 
 PACKAGES = ("refimpl", "appendix_a", "verification", "reports")
+
+# The collector goes through all that thousands of collected tests keep, again and again: a fifth of the time
+# of tests that parse or copy much. It looks less often, and no more at what the collection made.
+gc.set_threshold(20_000)
+
+
+def pytest_collection_finish() -> None:
+    gc.freeze()
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -42,3 +51,12 @@ class ImportedOnce:
         if inside.suffix == ".py" and inside.parts[0] in PACKAGES and inside.name != "__main__.py":
             with suppress(Exception):  # the import for the doctests reports it
                 importlib.import_module(".".join(inside.with_suffix("").parts).removesuffix(".__init__"))
+
+
+@pytest.fixture
+def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sweeps without workers, whatever their command says: each would import everything again."""
+    from verification.sweep import engine
+
+    sweep = engine.sweep
+    monkeypatch.setattr(engine, "sweep", lambda *given, **named: sweep(*given, **(named | {"workers": 0})))

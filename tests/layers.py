@@ -11,14 +11,12 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def module_name(path: Path) -> str:
-    """Dotted name of a file of the project."""
     parts = path.relative_to(ROOT).with_suffix("").parts
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
 @cache
 def modules(package: str) -> dict[str, Path]:
-    """All modules below a package, by name."""
     return {module_name(path): path for path in sorted((ROOT / package).rglob("*.py"))}
 
 
@@ -34,7 +32,6 @@ def imported_names(source: str) -> Iterator[tuple[int, str]]:
 
 @cache
 def uses(name: str, package: str) -> frozenset[str]:
-    """Modules of the package that a module imports."""
     known = modules(package)
     found = set()
     for _, full in imported_names(known[name].read_text(encoding="utf-8")):
@@ -44,14 +41,15 @@ def uses(name: str, package: str) -> frozenset[str]:
     return frozenset(found - {"", name, package})
 
 
-def closure(name: str, package: str = "refimpl") -> set[str]:
+@cache
+def closure(name: str, package: str = "refimpl") -> frozenset[str]:
     """All modules that a module imports, directly or not, with itself."""
     found, waiting = {name}, [name]
     while waiting:
         new = uses(waiting.pop(), package) - found
         found |= new
         waiting.extend(new)
-    return found
+    return frozenset(found)
 
 
 def room(name: str) -> str:

@@ -35,7 +35,6 @@ def worn(seed: int = 1, short_cut: float = 8 * PITCH, rms: float = 0.39e-6) -> S
 
 
 def scene(plate: Surface, load: float = 10.0, points: tuple[int, int] = POINTS) -> rf.Scene:
-    """The ball on a plate."""
     bodies = rf.Body(STEEL, BALL), rf.Body(STEEL, plate)
     return rf.Scene(*bodies, friction=FRICTION, load=load, size=lengths(points))
 
@@ -73,6 +72,5 @@ def write(z: Array, path: Path, unit: float = 1e-6) -> Path:
 
 
 def measured(path: Path, **keys: object) -> rf.MeasuredSurface:
-    """The map in a file that `write` wrote."""
     given: dict[str, object] = {"unit": "um", "pixel_size": PITCH} | keys
     return rf.MeasuredSurface(path, **given)  # type: ignore[arg-type]  # keys of several types

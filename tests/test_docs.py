@@ -20,6 +20,7 @@ LONG = {
 """Pages of 5 seconds and more, but for check-your-solver, whose program in C no other test of CI runs."""
 
 
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize(
     "path",
     [pytest.param(p, id=p.stem, marks=[pytest.mark.nightly] if p.stem in LONG else []) for p in DOCS],

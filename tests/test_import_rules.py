@@ -30,7 +30,7 @@ the paper's printed numbers with the cases."""
 def imported(source: str) -> Iterator[tuple[int, str]]:
     """Line and module of every import of a package of ours, wherever in the file it stands."""
     calls = (node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call))
-    loaded = (call for call in calls if ast.unparse(call.func).endswith("import_module"))
+    loaded = (c for c in calls if getattr(c.func, "attr", getattr(c.func, "id", "")) == "import_module")
     names = [(c.lineno, a.value) for c in loaded for a in c.args if isinstance(a, ast.Constant)]
     for line, name in [*imported_names(source), *names]:
         if name.partition(".")[0] in (*PACKAGES, "tests", "a relative import"):

@@ -11,7 +11,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +18,7 @@ import numpy as np
 import pytest
 
 from tests.documents import ROOT
-from tests.verification.cli.children import finished
+from tests.verification.cli.children import finished, until
 
 JOBS = ROOT / "examples/jobs"
 PATIENCE = 300.0  # s, on a busy machine; each takes a few on an idle one
@@ -35,7 +34,6 @@ def job(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def run(folder: Path, name: str) -> str:
-    """What a job prints."""
     command = ["bash", f"{name}.sh"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=PATIENCE)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -52,7 +50,6 @@ def table(folder: Path, name: str) -> list[dict[str, str]]:
 
 
 def rough(n: int, pixel: float, rms: float, seed: int) -> Any:
-    """A smooth random map of n by n points."""
     q = 2 * np.pi * np.hypot(*np.meshgrid(*2 * [np.fft.fftfreq(n, pixel)], indexing="ij"))
     noise = np.random.default_rng(seed).normal(size=(n, n))
     z = np.fft.ifft2(np.fft.fft2(noise) * np.exp(-((q * 30e-6) ** 2) / 18.4)).real
@@ -74,9 +71,7 @@ def test_a_sweep_is_interrupted_and_goes_on(job: Path) -> None:
         start_new_session=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a job in the background ignores it
     )  # fmt: skip
-    end = time.monotonic() + PATIENCE
-    while finished(job / "loads.sqlite") < 10 and started.poll() is None and time.monotonic() < end:
-        time.sleep(0.05)
+    until(PATIENCE, "ten runs", lambda: finished(job / "loads.sqlite") >= 10 or started.poll() is not None)
     os.killpg(started.pid, signal.SIGINT)  # Ctrl-C, of the whole group
     _, shown = started.communicate(timeout=PATIENCE)
     message = r"interrupted: (\d+) of 210 runs are kept in loads.sqlite; the same command resumes"

@@ -65,6 +65,5 @@ def test_what_is_said_first_is_so() -> None:
 
 
 def row(label: str) -> list[str]:
-    """Return the cells of the row with a label, in the table of one grid."""
     (line,) = (line for line in PAGE.splitlines() if line.startswith(f"| {label} |"))
     return [cell.strip() for cell in line.strip("|").split("|")][1:]

@@ -28,7 +28,6 @@ def expected(name: str) -> Record:
 
 
 def found(name: str) -> Record:
-    """Numbers by production."""
     try:
         s = drawn(SEEDS[name]).production()
     except Exception as raised:  # whatever a fault makes of the solver

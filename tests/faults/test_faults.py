@@ -48,7 +48,6 @@ def solved(folder: Path, fault: Fault | None = None) -> dict[str, Record]:
 
 @cache
 def reference(name: str) -> Record:
-    """Return a scene's record by the one-file reference."""
     return expected(name)
 
 

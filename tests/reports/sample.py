@@ -24,7 +24,6 @@ def case(id: str, status: str = "pass", **other: Any) -> dict[str, Any]:
 
 
 def error_of(case: dict[str, Any]) -> float | None:
-    """The error that the value, the reference and the metric make."""
     value, reference = case["value"], case["reference"]
     if value is None or reference is None:
         return value

@@ -62,7 +62,6 @@ def test_every_case_is_on_the_page_with_all_that_a_reader_needs() -> None:
 
 
 def summary_of(page: str) -> Page:
-    """The summary alone."""
     found = re.search(r'<section id="summary">.*?</section>', page, flags=re.S)
     assert found
     return Page(found[0])

@@ -32,7 +32,6 @@ REPLACEMENTS: tuple[Any, ...] = (
 
 
 def places(item: object, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-    """Every place of a document, from the top."""
     if path:
         yield path
     entries = item.items() if isinstance(item, dict) else enumerate(item) if isinstance(item, list) else ()

@@ -1,4 +1,4 @@
-"""A throw-away package of cases, for the registry and the runner; sweeps in this process."""
+"""A throw-away package of cases, for the registry and the runner."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 from verification.framework import registry
-from verification.sweep import engine
 
 HEAD = """
 import os, time
@@ -45,10 +44,3 @@ def make_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Ma
     yield make
     for name in [m for m in sys.modules if m.split(".")[0] in made]:
         del sys.modules[name]
-
-
-@pytest.fixture
-def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Sweeps without workers, whatever their command says: each would import everything again."""
-    sweep = engine.sweep
-    monkeypatch.setattr(engine, "sweep", lambda *given, **named: sweep(*given, **(named | {"workers": 0})))

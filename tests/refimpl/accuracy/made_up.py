@@ -64,5 +64,4 @@ def sloped(mu: float, M: int, slope_sampling_error: float) -> GridFeatures:
 
 
 def peaked(M: int, height: float, drop: float, non_parabolicity: float = 0.0) -> GridFeatures:
-    """A grid with that peak of its pressure."""
     return replace(made_up(M), peak=Peak(height, drop, non_parabolicity))

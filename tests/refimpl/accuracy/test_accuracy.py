@@ -25,7 +25,6 @@ def sliding_ball(rms: float, seed: int, load: float = 70.0) -> rf.Scene:
 
 
 def bar(s: rf.Solution, name: str) -> float:
-    """Sum of a number's parts."""
     return math.fsum(s.uncertainty[name].values())
 
 

@@ -19,7 +19,6 @@ SIDE = 1e-3
 
 
 def rough(lower: rf.Material, height: float, load: float, seed: int) -> rf.Scene:
-    """A flat on 5 x 5 elements of random heights."""
     heights = np.random.default_rng(seed).uniform(0, height, (5, 5))
     upper = rf.Body(rf.Material(30e9, 0.3), rf.Flat())
     friction = rf.Friction(tau=1e6, beta=0.2)

@@ -74,6 +74,8 @@ def test_a_file_needs_a_measured_surface() -> None:
         ("load,mu\n5,0.1\n9,0.1\n", "u_mu, the standard uncertainty"),
         ("load,mu,u_mu\n-5,0.1,0.01\n9,0.1,0.01\n", "line 2: load = -5.0: expected a positive number"),
         ("load,mu,u_mu\n5,0.1,0\n9,0.1,0.01\n", "line 2: u_mu"),
+        ("load,mu,u_mu\n5,0.1,1e300\n9,0.1,0.01\n", "data line 2: u_mu = 1e+300"),
+        ("load,mu,u_mu\n5,1e300,0.01\n9,0.1,0.01\n", "data line 2: mu = 1e+300"),
         ("load,mu,u_mu\n5,-0.1,0.01\n9,0.1,0.01\n", "not negative"),
         ("load,mu,u_mu\n5,high,0.01\n9,0.1,0.01\n", "line 2: mu = 'high': expected a finite number"),
         ("load,mu,u_mu\n5 kN,0.1,0.01\n9,0.1,0.01\n", "in N, without its unit"),

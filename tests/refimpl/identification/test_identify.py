@@ -112,7 +112,7 @@ def _yielding(smooth: rf.Scene, hardness: float) -> rf.Scene:
 
 def test_the_hardness_is_given_back_from_a_wrong_guess(smooth: rf.Scene) -> None:
     """p_max of the elastic contact is 0.17 GPa at 70 N: 0.1 GPa yields at the larger loads alone."""
-    loads, grid = (5.0, 20.0, 40.0, 80.0), 24
+    loads, grid = (5.0, 20.0, 40.0, 80.0), 16
     rows = _rows(_yielding(smooth, 100e6), 0.002, loads, grid)
     found = identify(_yielding(_without_friction(smooth), 130e6), rows, grid, fit=["hardness"], design=False)
     hardness = found.values["lower.material.hardness"]

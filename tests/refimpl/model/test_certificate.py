@@ -53,7 +53,6 @@ def judged(
 
 
 def energy_density(pressure: np.ndarray) -> float:
-    """Elastic energy over an element's area (J/m^2)."""
     displaced = DenseInfluence(GRID, SCENE.sliding_direction).normal(pressure)
     return float(0.5 * SCENE.materials.normal_compliance * np.sum(pressure * displaced))
 

@@ -119,14 +119,7 @@ def test_the_papers_scheme_solves_it_too() -> None:
 AGREEMENT = 1e-10
 """Of the largest pressure."""
 
-SCENE = rf.Scene(
-    upper=rf.Body(HARD, rf.Sphere(radius=0.02)),
-    lower=rf.Body(SOFT, rf.Flat()),
-    friction=rf.Friction(tau=3e5, beta=0.2),
-    load=2.0,
-    side=1.6e-3,
-    sliding_direction=0.7,
-)
+SCENE = replace(SMOOTH, friction=rf.Friction(tau=3e5, beta=0.2), load=2.0)
 GRIDS = {
     "coarser grids": Grid((48, 32), (1.6e-3, 1.2e-3)),
     "strip": Grid((60, 5), (1.6e-3, 2e-4)),

@@ -10,7 +10,7 @@ import numpy as np
 
 from refimpl.grid import Grid
 from refimpl.measured import MeasuredSurface
-from refimpl.surfaces import SurfaceWarning
+from refimpl.surfaces import Surface, SurfaceWarning
 
 DX, DY = 1.5e-7, 3.1e-7  # pixels that are not square
 NX, NY = 60, 50
@@ -53,7 +53,7 @@ def elements(grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> tuple[np.n
     return x[:, None], y[None, :]
 
 
-def quietly(surface: MeasuredSurface, grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> np.ndarray:
+def quietly(surface: Surface, grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> np.ndarray:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", SurfaceWarning)
         return surface.heights(grid, offset)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import replace
 from typing import Any
 
@@ -14,6 +13,7 @@ from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.surfaces import GaussianRoughness, SurfaceWarning, gaussian
 from refimpl.surfaces.noise_lattice import white_noise
+from tests.refimpl.surfaces.measured import quietly
 
 SIDE, LENGTH = 1.61e-3, 104e-6
 GRID = Grid.square(SIDE, 64)
@@ -22,12 +22,6 @@ PERIODIC = replace(GRID, periodic=True)
 
 def unit(seed: int = 1, length: float = LENGTH, normalise: bool = False) -> GaussianRoughness:
     return GaussianRoughness(1.0, length, seed, normalise=normalise)
-
-
-def quietly(surface: GaussianRoughness, grid: Grid, offset: tuple[float, float] = (0.0, 0.0)) -> np.ndarray:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", SurfaceWarning)
-        return surface.heights(grid, offset)
 
 
 def test_deterministic_and_pinned() -> None:

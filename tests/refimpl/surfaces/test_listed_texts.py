@@ -74,7 +74,6 @@ class File:
 
 
 def check(path: Path, file: File) -> None:
-    """Read the file, or see it refused, as its verdict says."""
     path.write_bytes(file.content.encode(file.encoding))
     if file.verdict == "refused":
         with pytest.raises(InputError) as refused:

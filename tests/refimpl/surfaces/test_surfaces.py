@@ -26,6 +26,7 @@ from refimpl.surfaces import (
     surface_from_dict,
 )
 from refimpl.surfaces.arrays import resample_periodic
+from tests.refimpl.surfaces.measured import quietly
 
 GRID = Grid.square(2e-3, 16)
 EPS = np.finfo(float).eps
@@ -87,15 +88,9 @@ def test_resampling_reproduces_bicubics_up_to_the_border(shape: tuple[int, int])
 
     x, y = ((np.arange(n) + 0.5) / n for n in shape)
     grid = Grid((16, 12), (1.0, 1.0))
-    z = resampled_quietly(bicubic(x[:, None], y[None, :]), grid, (1 / shape[0], 1 / shape[1]))
+    z = quietly(ArraySurface(bicubic(x[:, None], y[None, :]), (1 / shape[0], 1 / shape[1])), grid)
     # not-a-knot splines contain all cubics; extrapolation by half a cell amplifies rounding by < 4 an axis
     np.testing.assert_allclose(z, bicubic(*centres(grid)), rtol=0, atol=200 * EPS * 12)
-
-
-def resampled_quietly(array: np.ndarray, grid: Grid, pixel: tuple[float, float] | None = None) -> np.ndarray:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", SurfaceWarning)
-        return ArraySurface(array, pixel).heights(grid)
 
 
 def test_periodic_resampling_wraps_and_keeps_the_data() -> None:

@@ -8,12 +8,14 @@ import sqlite3
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Callable
 from contextlib import closing, suppress
 from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import NamedTuple
 
+import psutil
 import pytest
 
 from verification.sweep.study import Study
@@ -77,6 +79,18 @@ def started(arguments: list[str], folder: Path) -> subprocess.Popen[str]:
     return child
 
 
+def running(pid: int) -> bool:
+    """Whether a process is there and no zombie, which only its parent could bury."""
+    return psutil.pid_exists(pid) and psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
+
+
+def until(seconds: float, what: str, holds: Callable[[], object]) -> None:
+    deadline = time.monotonic() + seconds
+    while not holds():
+        assert time.monotonic() < deadline, what
+        time.sleep(0.05)
+
+
 def one_line(ended: Ended, says: str, status: int = 1) -> None:
     """The fault is told in one clear line, without a traceback."""
     assert ended.status == status, ended.err
@@ -90,7 +104,6 @@ def small(realisations: int = 40) -> Study:
 
 
 def finished(store: Path) -> int:
-    """Return the number of finished runs of a store; 0 before it has its table."""
     if not store.exists():
         return 0
     with closing(sqlite3.connect(store)) as connection, suppress(sqlite3.OperationalError):

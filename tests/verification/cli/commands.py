@@ -34,8 +34,6 @@ STUDY = 'scene = "table1-rough"\nrealisations = 2\n[vary]\ngrid = [8, 12]\n'
 
 
 class Done(NamedTuple):
-    """Exit status and both outputs of a command."""
-
     status: int
     out: str
     err: str
@@ -53,7 +51,6 @@ class Stream(io.StringIO):
 
 
 def run(command: str, *, terminal: bool = False) -> Done:
-    """Run ``rough-friction`` with the words of a command."""
     out, err = io.StringIO(), Stream(terminal)
     with redirect_stdout(out), redirect_stderr(err):
         try:
@@ -73,7 +70,6 @@ def shown(command: str, status: int = 0) -> str:
 
 
 def answer(command: str, status: int = 0) -> Any:
-    """The JSON document of a command."""
     return json.loads(shown(f"{command} --json -", status))
 
 

@@ -105,19 +105,6 @@ def test_a_study_beyond_the_memory_is_refused_before_its_store_is_made(folder: P
     assert not Path("study.sqlite").exists()
 
 
-@pytest.mark.parametrize(
-    ("text", "says"),
-    [
-        ("load,mu,u_mu\n-5,0.1,0.01\n9,0.1,0.01\n", "a positive number"),
-        ("load,mu,u_mu\n5,0.1,1e300\n9,0.1,0.01\n", "data line 2: u_mu = 1e+300"),
-        ("load,mu,u_mu\n0.005,0.1,0.01\n9,0.1,0.01\n", "kN"),
-    ],
-)
-def test_tables_of_measured_friction(text: str, says: str, folder: Path) -> None:
-    Path("data.csv").write_text(text)
-    refused("identify table1-smooth data.csv --grid 48", says)
-
-
 @pytest.mark.parametrize("command", ["identify hertz", "identify hertz data.csv --store", "report --results"])
 @pytest.mark.parametrize("file", ["/dev/full", "pipe"])
 def test_a_device_or_a_pipe_has_no_end(command: str, file: str, folder: Path) -> None:

@@ -16,7 +16,6 @@ from verification.coverage.class_scenes import CLASSES, scene
 
 @cache
 def drawn_of(kind: str, number: int = 20) -> list[rf.Scene]:
-    """The first scenes of a class."""
     return [scene(kind, seed) for seed in range(number)]
 
 

@@ -30,8 +30,6 @@ def one_per_cent_stiffer(body: rf.Body) -> rf.Body:
 
 
 def scene_fault(change: Callable[[rf.Scene], dict[str, Any]]) -> Solver:
-    """A solver of another scene."""
-
     def solve(scene: rf.Scene, **options: Any) -> rf.Solution:
         return rf.solve(dataclasses.replace(scene, **change(scene)), **options)
 
@@ -39,8 +37,6 @@ def scene_fault(change: Callable[[rf.Scene], dict[str, Any]]) -> Solver:
 
 
 def pressure_fault(change: Callable[[Array], Array]) -> Solver:
-    """A solver that returns another pressure."""
-
     def solve(scene: rf.Scene, **options: Any) -> rf.Solution:
         found = rf.solve(scene, **options)
         return changed(found, pressure=change(found.pressure))

@@ -25,7 +25,6 @@ def watching(answer: Callable[[ContactProblem], Array]) -> tuple[Limited, list[t
 
 
 def problem_of(array: PinArray, *, by_load: bool = True) -> ContactProblem:
-    """The problem that an array poses."""
     solver, asked = watching(lambda _: array.pressure)
     (array.under_load if by_load else array.at_approach)(Entrant(solver))
     return asked[0][0]

@@ -139,7 +139,6 @@ def test_negative_control_tamaas_without_its_second_step_is_periodic() -> None:
 
 
 def fails(code: PublishedCode, *cases: str) -> bool:
-    """Whether the suite fails it in each of these cases."""
     return [result.status for result in suite.run(code, cases)] == ["fail"] * len(cases)
 
 

@@ -104,13 +104,11 @@ def test_what_is_no_number_is_a_bad_answer(wrong: object) -> None:
 
 
 def halved(problem: ContactProblem) -> Answer:
-    """Right pressures; half the approach."""
     answer = own.solve(problem)
     return replace(answer, approach=0.5 * float(answer.approach or 0.0))
 
 
 def halving() -> Limited:
-    """Source of the solver for another process."""
     return Limited(halved, own.solve.abilities)
 
 

@@ -1,50 +1,26 @@
-"""Processes of solvers: none can change its judge, and nothing that a run started goes on after it."""
+"""Processes of solvers: none can change its judge, and none goes on after its run."""
 
 from __future__ import annotations
 
 import json
 import os
 import signal
-import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-import psutil
 import pytest
 
-from tests.verification.cli.children import forked, started
+from tests.verification.cli.children import running
 from verification.cli import main
-from verification.cli.suite_run import unwinding
 from verification.framework.case import Result
-from verification.solver_suite import identity, isolated, process
+from verification.solver_suite import identity, isolated
 from verification.solver_suite.isolated import Named
 from verification.solver_suite.protocol import ContactProblem
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="signals and forks of POSIX")
-SLEEPER = "sh -c 'echo $$ > pid; exec sleep 600' "
-SLEEPS = """
-import os, time
-from pathlib import Path
-
-def solve(problem):
-    Path("pid.new").write_text(str(os.getpid()))
-    os.rename("pid.new", "pid")
-    os.environ.clear()
-    time.sleep(600)
-
-opened = []
-
-def reopens(problem):  # a file in the place of every descriptor, from the first problem on
-    if opened:
-        solve(problem)
-    os.closerange(3, 64)
-    opened.extend(open(__file__) for _ in range(60))
-    return 0 * problem.gap
-"""
 SOLVERS = r'''
 import os, subprocess, sys, time
 from pathlib import Path
@@ -130,33 +106,13 @@ def hides(problem):
     while not (os.path.exists("pid") and open("pid").read()):
         time.sleep(0.01)
     return own.solve(problem)
-
-def slow_second(problem):
-    if os.path.exists("first"):
-        open("second", "w").close()
-        time.sleep(600)
-    open("first", "w").close()
-    return own.solve(problem)
 '''
 CASES = ["solver/one-element", "solver/pins"]
 OTHER = "the solver's process sent something else than an answer"
 
 
-def running(pid: int) -> bool:
-    """Whether a process is there and no zombie, which only its parent could bury."""
-    return psutil.pid_exists(pid) and psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
-
-
-def until(seconds: float, what: str, holds: Callable[[], object]) -> None:
-    deadline = time.monotonic() + seconds
-    while not holds():
-        assert time.monotonic() < deadline, what
-        time.sleep(0.05)
-
-
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A directory to run in, with the solvers."""
     (tmp_path / "hostile.py").write_text(SOLVERS)
     monkeypatch.chdir(tmp_path)
     return tmp_path
@@ -184,10 +140,10 @@ def test_a_solver_without_an_answer_is_an_error_of_its_case(folder: Path, name: 
 def test_after_a_problem_without_an_answer_the_rest_still_runs(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(isolated, "GRACE", 9.0)
+    monkeypatch.setattr(isolated, "GRACE", 4.0)
     first, second = judged("hangs", timeout=0.5)
     assert (first.status, second.status) == ("error", "pass")
-    assert first.note.startswith("no answer within 9.5 s")
+    assert first.note.startswith("no answer within 4.5 s")
 
 
 PROBLEM = ContactProblem(np.zeros((2, 2)), spacing=1e-6, reduced_modulus=1e9, load=4e-6)
@@ -195,7 +151,6 @@ PROBLEM = ContactProblem(np.zeros((2, 2)), spacing=1e-6, reduced_modulus=1e9, lo
 
 @pytest.fixture
 def temporary(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The directory of the solvers' folders."""
     (folder / "tmp").mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(folder / "tmp"))
     return folder / "tmp"
@@ -275,80 +230,3 @@ def test_somebody_elses_child_is_left_alone(folder: Path) -> None:
     finally:
         os.kill(other, signal.SIGKILL)
         os.waitpid(other, 0)
-
-
-@pytest.mark.parametrize(
-    ("how", "status"),
-    [(signal.SIGINT, 130), pytest.param(signal.SIGTERM, -signal.SIGTERM, marks=pytest.mark.nightly)],
-)
-def test_an_interrupted_run_shows_and_writes_what_is_judged_so_far(
-    folder: Path, how: signal.Signals, status: int
-) -> None:
-    only = [word for case in CASES for word in ("--only", case)]
-    child = started(["verify", "--solver", "hostile:slow_second", *only, "--json", "out.json"], folder)
-    try:
-        until(180, "the second problem is posed", lambda: (folder / "second").exists())
-        child.send_signal(how)
-        out, err = child.communicate(timeout=20)
-    finally:
-        child.kill()
-    assert child.returncode == status
-    assert "pass  solver/one-element" in out
-    assert "interrupted: 1 cases were not judged" in out
-    assert err == ""
-    document = json.loads((folder / "out.json").read_text())
-    assert document["interrupted"] is True
-    assert [case["status"] for case in document["cases"]] == ["pass"]
-    assert document["solver"]["not_judged"] == ["solver/pins"]
-
-
-@pytest.mark.parametrize(
-    ("solver", "how"),
-    [
-        pytest.param(["--exec", SLEEPER], signal.SIGTERM, marks=pytest.mark.nightly),
-        (["--exec", SLEEPER], signal.SIGKILL),
-        (["--solver", "sleeper:reopens", "--only", "solver/pins"], signal.SIGKILL),
-        pytest.param(["--solver", "sleeper:solve"], signal.SIGHUP, marks=pytest.mark.nightly),
-    ],
-)
-def test_a_run_that_is_ended_takes_the_solver_with_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, solver: list[str], how: signal.Signals
-) -> None:
-    (tmp_path / "tmp").mkdir()
-    (tmp_path / "sleeper.py").write_text(SLEEPS)
-    monkeypatch.setenv("TMPDIR", str(tmp_path / "tmp"))
-    child = started(["verify", *solver, "--only", "solver/one-element"], tmp_path)
-    until(180, "the solver started", lambda: (tmp_path / "pid").exists() and (tmp_path / "pid").read_text())
-    pid = int((tmp_path / "pid").read_text())
-    try:
-        child.send_signal(how)
-        assert child.wait(timeout=10) == (130 if how is signal.SIGINT else -how)
-        until(10, "the solver ended", lambda: not running(pid))
-        until(10, "no directory is left", lambda: not list((tmp_path / "tmp").iterdir()))
-        _, err = child.communicate(timeout=10)  # whoever is left holds the pipes too
-        assert err == ""
-    finally:
-        if running(pid):
-            os.kill(pid, signal.SIGKILL)
-        child.kill()
-        child.communicate()
-
-
-def test_an_ignored_signal_stays_so() -> None:
-    def act() -> int:
-        signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as under nohup
-        with unwinding(signal.SIGTERM, signal.SIGHUP):
-            os.kill(os.getpid(), signal.SIGHUP)
-        return 3
-
-    assert forked(act).status == 3
-
-
-def test_a_number_is_signalled_only_while_it_is_the_solvers(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Once it is reaped, the system may give its number to anybody."""
-    signalled = list[bool]()
-    monkeypatch.setattr(process, "kill_group", lambda pid: signalled.append(psutil.pid_exists(pid)))
-    child = subprocess.Popen([sys.executable, "-c", ""], stdin=subprocess.PIPE, start_new_session=True)
-    assert process.end_all(child, "nobody's mark") == []
-    assert process.end_all(child, "nobody's mark") == []
-    assert signalled == [True]

@@ -31,7 +31,6 @@ CALLS = {
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with all readers and an export, ``data``."""
     path = tmp_path_factory.mktemp("readers")
     only = ("design-oblong-0*", "pins", "hertz-load")
     words = [word for name in only for word in ("--only", f"solver/{name}")]

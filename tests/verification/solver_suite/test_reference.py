@@ -124,7 +124,6 @@ def test_a_problem_that_differs_in_one_number_is_another_one() -> None:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A small export."""
     path = tmp_path_factory.mktemp("export") / "data"
     assert main(["verify", "--export", str(path), *ONLY]) == 0
     return path
@@ -174,12 +173,10 @@ def test_an_export_agrees_with_itself(folder: Path, capsys: pytest.CaptureFixtur
 
 @pytest.fixture
 def copy(folder: Path, tmp_path: Path) -> Path:
-    """A copy of the export that may be changed."""
     return Path(shutil.copytree(folder, tmp_path / "copy"))
 
 
 def multiply(copy: Path, factor: float) -> None:
-    """Multiply the pins' pressures by a factor."""
     name = copy / "data/pins.pressure.f64"
     (factor * np.fromfile(name, "<f8")).astype("<f8").tofile(name)
 

@@ -31,7 +31,6 @@ SOURCE = Path(__file__).with_name("solver.c")
 
 
 def naming(fault: Fault) -> list[str]:
-    """Ids of the checks that name a fault."""
     return [check.id for check in suite() if fault in check.catches]
 
 

@@ -6,14 +6,14 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
+import psutil
 import pytest
 
 from refimpl.errors import InputError
-from tests.verification.cli.children import Ended, finished, one_line
+from tests.verification.cli.children import Ended, finished, one_line, running, until
 from tests.verification.cli.commands import refused, shown
 from tests.verification.sweep.own_cluster import cluster
 from verification.framework.threads import THREADS, limited_to_one_thread
@@ -107,32 +107,17 @@ def test_a_refusal_leaves_the_store(tmp_path: Path, kept: int) -> None:
 # --- kills ---
 
 
-def status(pid: int | str) -> list[str]:
-    """State and parent of a process, from /proc; empty when it has ended."""
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[:2]
-    except (FileNotFoundError, ProcessLookupError):
-        return []
-
-
 def test_the_killed_command_leaves_no_workers_and_resumes(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(STUDY)
     code = "from verification.cli import main; raise SystemExit(main())"
     command = [sys.executable, "-c", code, "sweep", "study.toml", "--store", "s.sqlite"]
     killed = subprocess.Popen(command, cwd=tmp_path, env=ONE_THREAD, stderr=subprocess.DEVNULL)
-    deadline = time.monotonic() + 60
-    while finished(tmp_path / "s.sqlite") < 3 and time.monotonic() < deadline:
-        time.sleep(0.02)
-    everything = [entry.name for entry in Path("/proc").glob("[0-9]*")]
-    workers = [pid for pid in everything if status(pid)[1:] == [str(killed.pid)]]
+    until(60, "three runs are kept", lambda: finished(tmp_path / "s.sqlite") >= 3)
+    workers = [child.pid for child in psutil.Process(killed.pid).children()]
     killed.send_signal(signal.SIGKILL)
     killed.wait()
     assert len(workers) >= 2
-    while (
-        left := [pid for pid in workers if status(pid)[:1] not in ([], ["Z"])]
-    ) and time.monotonic() < deadline:
-        time.sleep(0.02)
-    assert left == []
+    until(60, "the workers ended", lambda: not any(map(running, workers)))
     kept = finished(tmp_path / "s.sqlite")
     assert 3 <= kept < 40
     study = read_study(tmp_path / "study.toml")
@@ -190,9 +175,7 @@ def test_a_lost_scheduler_is_one_line_and_the_sweep_goes_on_later(tmp_path: Path
         child = subprocess.Popen(
             [sys.executable, "-c", code, *tail], cwd=tmp_path, text=True, stderr=subprocess.PIPE
         )
-        deadline = time.monotonic() + 60
-        while finished(tmp_path / "s.sqlite") < 2 and time.monotonic() < deadline:
-            time.sleep(0.02)
+        until(60, "two runs are kept", lambda: finished(tmp_path / "s.sqlite") >= 2)
         scheduler.kill()
         _, err = child.communicate(timeout=120)
     one_line(Ended(child.returncode, err), "the scheduler")

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+import refimpl as rf
 from refimpl.errors import InputError
 from tests import plate
 from verification.cli import main
@@ -15,26 +17,6 @@ from verification.sweep.study_file import read_study
 
 POINTS = (40, 30)
 pytestmark = pytest.mark.usefixtures("in_this_process")
-SCENE = """
-load = 0.05
-[upper.material]
-E = 210e9
-nu = 0.3
-[[upper.surface]]
-kind = "sphere"
-radius = 3e-3
-[lower.material]
-E = 210e9
-nu = 0.3
-[[lower.surface]]
-kind = "measured"
-path = "map0.txt"
-unit = "um"
-pixel_size = 1.6e-6
-[friction]
-tau = 60e6
-beta = 0.1
-"""
 
 
 @pytest.fixture
@@ -44,7 +26,8 @@ def study(tmp_path: Path) -> Path:
         z = plate.sampled(plate.worn(seed=k, rms=0.05e-6), plate.CLEAN, POINTS)
         plate.write(z, tmp_path / f"map{k}.txt")
     (tmp_path / "broken.txt").write_text("power failure at 02:13")
-    (tmp_path / "scene.toml").write_text(SCENE)
+    scene = plate.scene(plate.measured(tmp_path / "map0.txt"), load=0.05, points=POINTS)
+    (tmp_path / "scene.toml").write_text(rf.scene_to_toml(replace(scene, size=None)))
     names = [f"map{k}.txt" for k in range(8)] + ["broken.txt", "lost.txt"]
     table = f'scene = "scene.toml"\n[vary]\ngrid = 64\n"lower.surface[0].path" = {json.dumps(names)}\n'
     (tmp_path / "night.toml").write_text(table)

@@ -200,7 +200,6 @@ def test_memory_is_a_name_like_any_other(tmp_path: Path, monkeypatch: pytest.Mon
 
 @pytest.fixture(scope="module")
 def finished() -> tuple[Run, Row, float]:
-    """A run with its row and its seconds."""
     (run,) = small(1).runs()
     return run, *execute(run.inputs)
 

@@ -122,7 +122,6 @@ def test_bad_studies_are_refused_by_name(field: str, change: dict[str, Any]) -> 
 
 
 def heights(seed: int, scale: float = 1e-9) -> np.ndarray:
-    """A map of 16 x 16 points (m)."""
     return scale * np.random.default_rng(seed).standard_normal((16, 16))
 
 

@@ -28,7 +28,6 @@ pytestmark = pytest.mark.usefixtures("in_this_process")
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The working directory, with a study of two loads."""
     monkeypatch.chdir(tmp_path)
     Path("study.toml").write_text('scene = "table1-rough"\n[vary]\ngrid = [12]\nload = [1.0, 70.0]\n')
     return tmp_path
