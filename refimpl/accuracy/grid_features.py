@@ -329,14 +329,20 @@ def slope_sampling_error(pressure: Array, slopes: Slopes, grid: Grid) -> tuple[f
 
 
 def _in_phase(load: Array) -> Array:
-    """Return squared sums along lines of each axis and diagonal, by the squared share of equal loads."""
-    i, j = (np.arange(count) for count in load.shape)
+    """Return squared sums along lines of each axis and diagonal, by the squared share of equal loads.
+
+    >>> _in_phase(np.eye(3))  # rows, columns and one diagonal hold one load a line, the other all three
+    array([3., 3., 3., 9.])
+    """
     found = []
-    for lines in (i[:, None] + 0 * j, 0 * i[:, None] + j, i[:, None] + j, i[:, None] - j + len(j)):
-        sums, squares, counts = (
-            np.bincount(lines.ravel(), weights=field.ravel()) for field in (load, load**2, load != 0)
-        )
-        equal = counts * squares
+    for lines in (load.T, load, _sheared(load), _sheared(load[:, ::-1])):
+        sums, equal = lines.sum(axis=0), np.count_nonzero(lines, axis=0) * (lines**2).sum(axis=0)
         share = np.divide(sums**2, equal, out=np.zeros_like(sums), where=equal > 0)
         found.append(float(np.sum(sums**2 * share**2)))
     return np.array(found)
+
+
+def _sheared(field: Array) -> Array:
+    """Return a field (m, n) with row i moved by i, (m, m + n - 1): its columns are diagonals of equal i + j."""
+    rows, columns = field.shape
+    return np.pad(field, ((0, 0), (0, rows))).ravel()[:-rows].reshape(rows, rows + columns - 1)
