@@ -13,6 +13,7 @@ from refimpl.model.problem import Terms
 from refimpl.planning.plan import Method
 from refimpl.scene.discretise import Discretiser
 from refimpl.scene.scene import Scene
+from refimpl.solution.plausibility import doubting
 from refimpl.solution.solution import Solution, assemble
 
 
@@ -80,19 +81,20 @@ def solve(
     """
     if progress is not None and not callable(progress):
         raise InputError("progress", progress, "a function of one line of text")
-    options = Options(
-        scene=scene,
-        grid=grid,
-        method=method,
-        accuracy=accuracy,
-        quantity=quantity,
-        approach=approach,
-        requested=Terms(coupled, oblique, tilted, slope_correction, plastic),
-        tolerance=tolerance,
-        start=start,
-        limits=Limits(max_grid, max_seconds, max_memory),
-    )
-    return _solved(options, progress)
+    with doubting(scene):
+        options = Options(
+            scene=scene,
+            grid=grid,
+            method=method,
+            accuracy=accuracy,
+            quantity=quantity,
+            approach=approach,
+            requested=Terms(coupled, oblique, tilted, slope_correction, plastic),
+            tolerance=tolerance,
+            start=start,
+            limits=Limits(max_grid, max_seconds, max_memory),
+        )
+        return _solved(options, progress)
 
 
 def _solved(options: Options, progress: Progress | None) -> Solution:

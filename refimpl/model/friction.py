@@ -53,7 +53,7 @@ class Friction:
 
     def __post_init__(self) -> None:
         require_number("friction.tau", self.tau, "a finite shear strength in Pa, not negative", at_least=0)
-        allowed = "a finite number, not negative, at most 1e6"
+        allowed = "a finite number, not negative, at most 1e6 (the order is tau, beta)"
         require_number("friction.beta", self.beta, allowed, at_least=0, at_most=1e6)
         keep_doubles(self, "tau", "beta")
 

@@ -39,6 +39,13 @@ SCENE, BODY = _texts(_TEXTS["scene"]), _texts(_TEXTS["body"])
 MATERIAL, FRICTION = _texts(_TEXTS["material"]), _texts(_TEXTS["friction"])
 SURFACES = {kind: _texts(table) for kind, table in _TEXTS["surface"].items()}
 """Texts by a surface's ``kind``."""
+_PLACES: dict[str, Iterable[str]] = {
+    "the top of a scene": SCENE,
+    "a body's table": BODY,
+    "a body's [material]": MATERIAL,
+    "[friction]": FRICTION,
+    **{f"a [[surface]] of kind {kind}": keys for kind, keys in SURFACES.items()},
+}
 
 _MAX_BYTES = 1_000_000  # a scene is a page of text; anything larger is not a scene
 _MAX_PARTS = 32  # parts of a dotted key: parse time grows with their square
@@ -103,9 +110,9 @@ def shipped_scenes() -> tuple[str, ...]:
 
 def scene_from_dict(table: Mapping[str, Any], folder: Path) -> Scene:
     """Return the scene of a parsed TOML table; unknown and missing keys raise `InputError`."""
-    _refuse_unknown("scene", table, SCENE)
+    refuse_unknown("scene", table, SCENE)
     friction = _table(table, "friction", {})
-    _refuse_unknown("friction", friction, FRICTION)
+    refuse_unknown("friction", friction, FRICTION)
     optional = {key: table[key] for key in _OPTIONAL_KEYS if key in table}
     scene = Scene(
         upper=_body(table, "upper", folder),
@@ -142,9 +149,9 @@ def _tolerances(table: Mapping[str, Any], scene: Scene) -> dict[str, float]:
 
 def _body(table: Mapping[str, Any], name: str, folder: Path) -> Body:
     body = _table(table, name, None)
-    _refuse_unknown(name, body, BODY)
+    refuse_unknown(name, body, BODY)
     material = _table(body, "material", None, prefix=f"{name}.")
-    _refuse_unknown(f"{name}.material", material, MATERIAL)
+    refuse_unknown(f"{name}.material", material, MATERIAL)
     parts = body.get("surface", [{"kind": "flat"}])
     if isinstance(parts, Mapping):
         parts = [parts]
@@ -188,7 +195,16 @@ def _required(table: Mapping[str, Any], name: str, allowed: str, prefix: str = "
     return table[name]
 
 
-def _refuse_unknown(name: str, table: Mapping[str, Any], known: Iterable[str]) -> None:
-    for key in table:
+def refuse_unknown(
+    name: str,
+    table: Mapping[str, Any],
+    known: Iterable[str],
+    others: Mapping[str, Iterable[str]] | None = None,
+) -> None:
+    """Raise `InputError` for a key that is none of the known, with the other tables that have it."""
+    for key, value in table.items():
         if key not in known:
-            raise InputError(f"{name}.{key}", table[key], f"no such key; known are {', '.join(known)}")
+            places = {**(others or {}), **_PLACES}
+            where = ", ".join(place for place, keys in places.items() if key in keys)
+            here = f" here, it is one of {where}" if where else ""
+            raise InputError(f"{name}.{key}", value, f"no such key{here}; known are {', '.join(known)}")

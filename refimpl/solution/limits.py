@@ -201,7 +201,8 @@ def _expected_size(evidence: Evidence) -> str:
         return ""
     radius = (0.75 * problem.load / (problem.pair.reduced_modulus * scene.curvature)) ** (1 / 3)
     half = min(problem.grid.lengths) / 2
-    unit = f" (is the radius {1 / scene.curvature:.3g} m?)" if radius > half else ""
+    right = f"the load, {problem.load:.4g} N, and the radius, {1 / scene.curvature:.3g} m, right"
+    unit = f" (are {right}?)" if radius > half else ""
     return f": Hertz's contact radius is {radius:.3g} m, half of the domain {half:.3g} m{unit}"
 
 

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from contextlib import contextmanager
 
+from refimpl.errors import InputError
 from refimpl.measured.areal_parameters import implausible_slope
 from refimpl.measured.measured_surface import MeasuredSurface
 from refimpl.model.friction import friction_coefficient_at
@@ -22,9 +24,12 @@ MODULI = (1e6, 2e12)  # Pa: from soft gels to twice diamond
 _STRONG = 10.0  # tau over the mean contact pressure
 _WEAK = 1e-3  # tau's share of mu
 _FULL_TURN = 6.2832  # rad: 2 pi, rounded up
+_STEEP = 2.0  # beta: mu of most dry contacts is below
+_LARGE = 0.1  # m: beyond the maps of profilometers
 _HUGE = 100.0  # domain over the radius of a ball: um taken for m is 1e6
 _SOFTER = 5.0  # E over the hardness: 20 to 500 of metals, 10 to 20 of ceramics, 6 to 10 of hard carbon
 _INDEX = 1e3  # plasticity index
+_NUMBERS = ("load", "approach", "friction.tau", "lower.surface", "upper.surface")
 _LENGTHS = ("correlation_length", "short_cut")  # roughness of longer ones is a smooth surface on the domain
 
 
@@ -40,24 +45,50 @@ def notes(solved: Evidence) -> tuple[ModelWarning | Notice, ...]:
 
 def implausible(scene: Scene, plan: Plan) -> Iterator[ModelWarning]:
     """Yield a warning for each input beyond its usual range; contact pressures are the expected ones."""
-    for name, body in (("lower", scene.lower), ("upper", scene.upper)):
-        yield from _material(name, body.material, scene.friction.jump)
-        yield from _surface(name, scene)
-    mean, tau, angle = plan.contact.mean_pressure, scene.friction.jump, scene.sliding_direction
+    yield from _unusual(scene)
+    mean, tau = plan.contact.mean_pressure, scene.friction.jump
     if mean > 0 and tau > _STRONG * mean:
+        large = max(scene.lengths) > _LARGE
+        unit = "are lengths in m (1 mm is 1e-3)" if large else "did you mean MPa (15 MPa is 15e6)"
         text = (
             f"tau, {tau:.4g} Pa, is {tau / mean:.3g} times the mean contact pressure to be expected: "
-            f"did you mean MPa (15 MPa is 15e6), and is the load, {scene.load:.4g} N, right?"
+            f"{unit}, and is the load, {scene.load:.4g} N, right?"
         )
         yield _warning(tau, _STRONG * mean, text)
     expected = friction_coefficient_at(scene.friction, mean) * mean if mean > 0 else 0.0
     if 0 < tau < _WEAK * expected:
         less = f"tau, {tau:.4g} Pa, is less than {_WEAK:.1%} of the friction to be expected"
         yield _warning(tau, _WEAK * expected, f"{less}: did you mean MPa (60 MPa is 60e6)?")
+    yield from _index(scene)
+
+
+@contextmanager
+def doubting(scene: object) -> Iterator[None]:
+    """Make refusals of a scene's numbers name the inputs beyond their usual ranges, often the cause."""
+    try:
+        yield
+    except InputError as refused:
+        doubts = _unusual(scene) if isinstance(scene, Scene) and refused.field in _NUMBERS else ()
+        allowed = "; ".join((refused.allowed, *doubts))
+        raise InputError(refused.field, refused.value, allowed) from refused.__cause__
+
+
+def _unusual(scene: Scene) -> Iterator[ModelWarning]:
+    """Yield the warnings that need no expected contact."""
+    for name, body in (("lower", scene.lower), ("upper", scene.upper)):
+        yield from _material(name, body.material, scene.friction.jump)
+        yield from _surface(name, scene)
+    yield from _angle("sliding_direction", scene.sliding_direction)
+    beta = scene.friction.slope
+    if beta > _STEEP:
+        text = f"beta, {beta:.4g}, is above {_STEEP:g}: per cent, or tau (the order is Friction(tau, beta))?"
+        yield _warning(beta, _STEEP, text)
+
+
+def _angle(name: str, angle: float) -> Iterator[ModelWarning]:
     if abs(angle) > _FULL_TURN:
-        text = f"sliding_direction, {angle:.4g} rad, is beyond a full turn: did you mean degrees"
+        text = f"{name}, {angle:.4g} rad, is beyond a full turn: did you mean degrees"
         yield _warning(abs(angle), _FULL_TURN, f"{text} (45 degrees are 0.785 rad)?")
-    yield from _index(scene, plan)
 
 
 def _warning(number: float, allowed: float, text: str) -> ModelWarning:
@@ -67,8 +98,9 @@ def _warning(number: float, allowed: float, text: str) -> ModelWarning:
 def _material(name: str, material: Material, tau: float) -> Iterator[ModelWarning]:
     least, most = MODULI
     if not material.is_rigid and not least <= material.E <= most:
-        help_ = "did you mean GPa (200 GPa is 200e9)?" if least > material.E else "a rigid body is E = rigid"
-        text = f"{name}.E, {material.E:.4g} Pa, is outside {least:g} to {most:g} Pa: {help_}"
+        said = f"{name}.E, {material.E:.4g} Pa, is outside {least:g} to {most:g} Pa"
+        unit = "did you mean GPa or MPa (200 GPa is 200e9)?"
+        text = f"{said}: {unit if least > material.E else 'a rigid body is E = rigid'}"
         yield _warning(material.E, least if least > material.E else most, text)
     hardness = material.hardness
     if hardness is None:
@@ -98,13 +130,14 @@ def _surface(name: str, scene: Scene) -> Iterator[ModelWarning]:
                 if label.startswith(_LENGTHS) and length > shorter:
                     text = f"{name}: {label} {length:.4g} m is beyond the domain's {shorter:.4g} m"
                     yield _warning(length, shorter, f"{text}: did you mean um (100 um is 100e-6)?")
+            yield from _angle(f"{name}: lay", part.parameters().get("lay", 0.0))
             rms = part.parameters().get("rms", 0.0)
             if rms > shorter:
                 text = f"{name}: rms {rms:.4g} m is beyond the domain's {shorter:.4g} m: did you mean um?"
                 yield _warning(rms, shorter, text)
 
 
-def _index(scene: Scene, plan: Plan) -> Iterator[ModelWarning]:
+def _index(scene: Scene) -> Iterator[ModelWarning]:
     """Yield the plasticity index of Eq. (12), by the expected contact's slopes of random roughness."""
     hardness, parts = scene.materials.softer_hardness, (*scene.parts("lower"), *scene.parts("upper"))
     rough = [part for part in parts if isinstance(part, GaussianRoughness | SelfAffineRoughness)]

@@ -14,7 +14,7 @@ from refimpl.planning.plan import Plan
 from refimpl.solution.details import Details, part
 from refimpl.solution.evidence import Cost
 from refimpl.solution.limits import model_warnings
-from refimpl.solution.model_warning import ModelWarning, Notice
+from refimpl.solution.model_warning import Limit, ModelWarning, Notice
 from refimpl.solution.plausibility import notes
 from refimpl.solution.quantities import Numbers
 
@@ -33,6 +33,9 @@ class _Fields(Numbers):
     cost: Cost = part("details")
 
 
+_ORDER = {Limit.INPUT: 0, Notice.limit: 2}
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Record(_Fields):
     """A `Solution` without its texts: what follows from its details. Arrays are read-only.
@@ -48,10 +51,10 @@ class Record(_Fields):
 
     @cached_property
     def warnings(self) -> tuple[ModelWarning | Notice, ...]:
-        """Warnings of the model's limits and of implausible inputs; then notes."""
+        """Warnings of implausible inputs, often the cause of others; of the model's limits; then notes."""
         evidence, shortfall = self.details.evidence, self.details.shortfall
         found = (*((shortfall,) if shortfall else ()), *model_warnings(evidence), *notes(evidence))
-        return tuple(sorted(found, key=lambda text: text.limit == Notice.limit))
+        return tuple(sorted(found, key=lambda text: _ORDER.get(text.limit, 1)))
 
     @cached_property
     def gap(self) -> Array:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 # Advice after an end that is no success.
 NEXT = {
     "STAGNATED": "not converged: a residual below stays above the tolerance; check units first "
-    "(E, tau, lengths), then try a looser --tolerance or a coarser --grid",
+    "(load, E, tau, lengths), then try a looser --tolerance or a coarser --grid",
     "ITERATION_LIMIT": "not converged within the limits of iterations: a looser --tolerance or --accuracy",
     "ACCURACY_NOT_REACHED": "the certificate holds, the accuracy was not reached: a larger --accuracy, or "
     "more of --max-grid, --max-seconds, --max-memory",

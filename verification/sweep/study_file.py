@@ -15,12 +15,13 @@ from refimpl.errors import InputError, require_number
 from refimpl.model.problem import Terms
 from refimpl.planning.plan import METHODS
 from refimpl.scene.parameters import parameters
-from refimpl.scene.scene_file import read_toml, scene_to_dict
+from refimpl.scene.scene_file import read_toml, refuse_unknown, scene_to_dict
 from verification.sweep import posable
 from verification.sweep.study import AXES, FRICTION_AXES, MAX_RUNS, RANDOM, ROUGHNESS_AXES, Study
 
 KEYS = ("scene", "realisations", "first_seed", "normalise", "vary", "solve")
 SOLVE_KEYS = ("method", "oblique", "slope_correction", "tolerance", "accuracy", "quantity")
+_PLACES = {"the top of a study": KEYS, "[vary]": AXES, "[solve]": SOLVE_KEYS}
 
 
 def read_study(path: str | Path, *, keep_going: bool = False) -> Study:
@@ -46,7 +47,7 @@ def shipped_studies() -> tuple[str, ...]:
 
 def study_from_dict(table: Mapping[str, Any], folder: Path = Path(), *, keep_going: bool = False) -> Study:
     """Return the study of a parsed TOML table, refused for all that its runs would be (`posable`)."""
-    _refuse_unknown("study", table, KEYS)
+    refuse_unknown("study", table, KEYS, _PLACES)
     name = table.get("scene")
     if not isinstance(name, str) or not name:
         raise InputError("scene", name, "a shipped scene's name or the path of a scene file")
@@ -62,7 +63,7 @@ def study_from_dict(table: Mapping[str, Any], folder: Path = Path(), *, keep_goi
         raise InputError("normalise", normalise, "true or false")
     base = read_scene(scene_file)
     vary = _by_axis(vary)
-    _refuse_unknown("vary", vary, (*AXES, *varied_names(base)))
+    refuse_unknown("vary", vary, (*AXES, *varied_names(base)), _PLACES)
     _refuse_doubles(vary)
     scene = scene_to_dict(base)
     realisations = _whole("realisations", table.get("realisations", 1), at_least=1)
@@ -152,7 +153,7 @@ def _check(study: Study) -> None:
 
 def _check_settings(settings: Mapping[str, Any]) -> None:
     """Check the [solve] table: what `refimpl.solve` would refuse, before there is a store or a worker."""
-    _refuse_unknown("solve", settings, SOLVE_KEYS)
+    refuse_unknown("solve", settings, SOLVE_KEYS, _PLACES)
     if settings.get("method", "fft") not in METHODS:
         raise InputError("solve.method", settings["method"], f"one of {', '.join(METHODS)}")
     for name in ("oblique", "slope_correction"):
@@ -215,9 +216,3 @@ def _whole(name: str, value: object, *, at_least: int, below: int | None = None)
         bound = "" if below is None else f" and below {below}"
         raise InputError(name, value, f"a whole number, at least {at_least}{bound}")
     return int(value)  # type: ignore[call-overload, no-any-return]  # checked above
-
-
-def _refuse_unknown(name: str, table: Mapping[str, Any], known: tuple[str, ...]) -> None:
-    for key in table:
-        if key not in known:
-            raise InputError(f"{name}.{key}", table[key], f"no such key; known are {', '.join(known)}")

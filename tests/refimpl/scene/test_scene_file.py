@@ -81,6 +81,27 @@ def test_paths_with_many_dots_are_no_keys(tmp_path: Path) -> None:
     rf.read_scene(tmp_path / "s.toml")
 
 
+@pytest.mark.parametrize(
+    ("line", "after", "says"),
+    [
+        ("tau = 15e6", "", r"scene.tau = .*one of \[friction\]"),
+        ("hardness = 1e9", "[lower]", r"lower.hardness = .*one of a body's \[material\]"),
+        ("sliding_direction = 0.5", "[friction]", r"sliding_direction = .*one of the top of a scene"),
+        ("rms = 1e-6", "[lower.material]", r"material.rms = .*one of a \[\[surface\]\] of kind gaussian"),
+    ],
+)  # fmt: skip
+def test_a_key_in_the_wrong_table_names_the_right_one(
+    line: str, after: str, says: str, tmp_path: Path
+) -> None:
+    text = "load = 1.0\nside = 1e-3\n"
+    for table in ("[lower]", "[lower.material]", "[upper]", "[upper.material]", "[friction]"):
+        text += f"{table}\n{line if table == after else ''}\n"
+        text += "E = 1e9\nnu = 0.3\n" if "material" in table else ""
+    (tmp_path / "s.toml").write_text(text if after else f"{line}\n{text}")
+    with pytest.raises(InputError, match=says):
+        rf.read_scene(tmp_path / "s.toml")
+
+
 @settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(key=st.text(st.characters(codec="utf-8", exclude_characters='"\\'), min_size=1, max_size=20))
 def test_no_key_reaches_a_terminal_unescaped(key: str, tmp_path: Path) -> None:

@@ -185,7 +185,8 @@ FLAT = "degrees: influence coefficients of a flat are off by"
          f"{PEAK} (at the hardness A is at least P/H, 25.0% more); set plastic = true"),
         # the cube root of 3 P R / (4 E*), with 1 / E* = 0.91 / 118 + 0.91 / 200 per GPa
         ("border", 16, FULL | {"load": 5e3},
-         "enlarge the domain: Hertz's contact radius is 0.00186 m, half of the domain 0.0008 m"),
+         "enlarge the domain: Hertz's contact radius is 0.00186 m, half of the domain 0.0008 m "
+         "(are the load, 5000 N, and the radius, 0.14 m, right?)"),
         # three elements in two patches: the root of 3 / (2 pi)
         ("contact radius", 0.690988, {"pressure": FEW}, "a mean radius of 0.69 elements: below 3 areas"),
         ("active set of tau", 2, {"pressure": FEW, "excluded": np.arange(24).reshape(6, 4) < 7},

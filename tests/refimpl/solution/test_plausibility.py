@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -12,6 +14,7 @@ import numpy as np
 import pytest
 
 import refimpl as rf
+from refimpl.scene.scene_file import scene_from_dict
 from refimpl.solution.model_warning import Limit, ModelWarning
 from refimpl.solution.plausibility import implausible
 
@@ -52,11 +55,33 @@ def test_what_is_usual_is_not_remarked_on() -> None:
     assert notes(SCENE) == []
 
 
+ROOT = Path(__file__).parents[3]
+PAGES = [
+    block
+    for page in ROOT.glob("docs/*.md")
+    for block in re.findall(r"```toml.*?\n(.*?)```", page.read_text(), re.S)
+]
+PUBLISHED = [
+    *map(rf.read_scene, rf.shipped_scenes()),
+    *map(rf.read_scene, sorted(ROOT.glob("verification/experiments/scenes/*.toml"))),
+    *(
+        scene_from_dict(tomllib.loads(text), ROOT)
+        for text in PAGES
+        if "[friction]" in text and "path" not in text
+    ),
+]
+
+
+@pytest.mark.parametrize("scene", PUBLISHED, ids=range(len(PUBLISHED)))
+def test_no_published_scene_is_implausible(scene: rf.Scene) -> None:
+    assert [text for text in rf.solve(scene, 32).warnings if text.limit == Limit.INPUT] == []
+
+
 @pytest.mark.parametrize("body", ["lower", "upper"])
 @pytest.mark.parametrize(
     ("E", "says"),
     [
-        (0.99e6, "did you mean GPa (200 GPa is 200e9)?"),
+        (0.99e6, "did you mean GPa or MPa (200 GPa is 200e9)?"),
         (1.01e6, None),
         (1.99e12, None),
         (2.01e12, "a rigid body is E = rigid"),
@@ -156,6 +181,43 @@ def test_an_implausible_input_is_a_warning_not_a_note() -> None:
     (found,) = (w for w in rf.solve(turned, 24).warnings if "did you mean" in w)
     assert isinstance(found, ModelWarning)
     assert (found.limit, found.number, found.allowed) == (Limit.INPUT, 45.0, pytest.approx(2 * math.pi, 1e-3))
+
+
+@pytest.mark.parametrize("body", ["lower", "upper"])
+def test_every_angle_beyond_a_full_turn_asks_for_degrees(body: str) -> None:
+    for lay, says in ((30.0, 1), (6.28, 0), (-6.28, 0), (-7.0, 1)):
+        found = notes(with_body(body, rf.Body(STEEL, replace(ROUGH, lay=lay))))
+        assert len(found) == says
+        assert all(note.startswith(f"{body}: lay, {lay:.4g} rad, is beyond a full turn") for note in found)
+        assert all("did you mean degrees" in note for note in found)
+
+
+def test_a_beta_in_per_cent_or_in_place_of_tau() -> None:
+    for beta, says in ((2.01, 1), (1.99, 0)):
+        found = notes(replace(SCENE, friction=rf.Friction(tau=3e7, beta=beta)))
+        assert len(found) == says
+        assert all("per cent" in note and "Friction(tau, beta)" in note for note in found)
+    with pytest.raises(rf.InputError, match="order is tau, beta"):
+        rf.Friction(0.08, 15e6)
+
+
+def test_a_tau_beyond_the_pressures_of_a_large_domain_asks_for_metres() -> None:
+    for size, unit in ((0.09, False), (0.11, True)):
+        (note,) = notes(replace(SCENE, size=(size, size)), mean_pressure=2.5e6)
+        assert ("are lengths in m (1 mm is 1e-3)" in note) == unit
+
+
+def test_a_refused_number_of_the_scene_comes_with_what_is_implausible() -> None:
+    """Moduli and hardness in MPa: the load is what cannot be, its cause are the pressures."""
+    soft = replace(SCENE, lower=rf.Body(rf.Material(105e3, 0.35, hardness=0.2), ROUGH))
+    with pytest.raises(rf.InputError, match=r"^load = .*; lower.E, 1.05e\+05 Pa, is outside .* GPa or MPa"):
+        rf.solve(replace(soft, friction=rf.Friction(tau=0.03, beta=0.1)), 16)
+    far = replace(SCENE, size=(300.0, 300.0), lower=rf.Body(BRASS, rf.Flat()))
+    far = with_body("upper", rf.Body(STEEL, rf.Sphere(0.01)), far)
+    with pytest.raises(rf.InputError, match=r"^upper.surface = .*is pixel_size, or the domain's size, in m"):
+        rf.solve(far, 16)
+    with pytest.raises(rf.InputError, match=r"^grid = (?!.*radius)"):  # no number of the scene
+        rf.solve(far, -1)
 
 
 def test_a_domain_of_hundred_balls_asks_for_the_unit_of_the_pixel() -> None:
