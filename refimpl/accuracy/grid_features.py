@@ -343,6 +343,6 @@ def _in_phase(load: Array) -> Array:
 
 
 def _sheared(field: Array) -> Array:
-    """Return a field (m, n) with row i moved by i, (m, m + n - 1): its columns are diagonals of equal i + j."""
+    """Return a field (m, n) with row i moved by i, (m, m + n - 1): columns are diagonals of equal i + j."""
     rows, columns = field.shape
     return np.pad(field, ((0, 0), (0, rows))).ravel()[:-rows].reshape(rows, rows + columns - 1)
