@@ -42,11 +42,11 @@ def memory(ratios: Ratios, rows: Rows) -> Spread | None:
 
 
 TABLE: dict[str, Number] = {
-    "time of ASPHER (quickest options) / our solver's": over(QUICKEST, by=ALONE),
-    "time of ASPHER / ours, from a scene to numbers with error bars": over(PEER),
-    "memory of a solve, ASPHER's / ours": memory,
-    "our time, with friction / without": over(SHEARED),
-    "our time, with friction and slopes / without": over(SLOPED),
+    "time: ASPHER (quickest options) over our solver": over(QUICKEST, by=ALONE),
+    "time: ASPHER over ours with error bars": over(PEER),
+    "memory: ASPHER over ours": memory,
+    "our time: with friction over without": over(SHEARED),
+    "our time: with friction and slopes over without": over(SLOPED),
 }
 
 
