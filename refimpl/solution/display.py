@@ -19,9 +19,10 @@ _INK = "#0072B2"  # Okabe and Ito 2008
 
 
 def line(solution: Record) -> str:
-    """Return one line: status, grid, mu with its error, A."""
+    """Return one line: status, grid, corrected mu and A with their errors."""
     mu, area = (
-        " ".join(shown(solution, name)) for name in ("friction_coefficient_corrected", "contact_area")
+        " ".join(shown(solution, name))
+        for name in ("friction_coefficient_corrected", "contact_area_corrected")
     )
     return f"<Solution {solution.status.value}, {solution.grid}: mu = {mu}, A = {area}>"
 

@@ -129,7 +129,7 @@ class Numbers:
     friction_coefficient = Quantity("mu, summed over elements", "mu", "1", target=True)
     contact_area = Quantity("contact area A", "A", "m^2", tables=_EVERYWHERE, target=True)
     contact_area_corrected = Quantity(
-        "A, perimeter-corrected", "A", "m^2", tables=("command",), target=True,
+        "A, perimeter-corrected", "A", "m^2", tables=("prompt", "command"), target=True,
         source=lambda s: s.details.features.numbers["contact_area_corrected"],
     )  # fmt: skip
     contact_area_share = Quantity(

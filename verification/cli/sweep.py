@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 FAILED = "FAILED"  # status of rows without numbers
 MOST_FILES = 7  # curves of a picture, one for each file; more are a mean with its scatter
-NAMES = {"friction_coefficient_corrected": "mu", "contact_area": "A"}
+NAMES = {"friction_coefficient_corrected": "mu", "contact_area_corrected": "A"}
 SUFFIXES = {"store": ".sqlite", "csv": ".csv", "parquet": ".parquet", "json": ".json"}
 
 EPILOG = """examples:

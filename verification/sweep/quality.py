@@ -12,7 +12,7 @@ from statistics import median, stdev
 
 from verification.sweep.run import CERTIFIED, COORDINATES, Row
 
-JUDGED = ("friction_coefficient_corrected", "contact_area")
+JUDGED = ("friction_coefficient_corrected", "contact_area_corrected")
 POINT = tuple(name for name in COORDINATES if name != "realisation")
 """Coordinates that the realisations of one point share."""
 

@@ -91,6 +91,7 @@ SHOWN = {  # value and error in SI, the unit there, and the row
     "friction_coefficient_corrected": (0.1234, 0.002, "1", "friction coefficient mu 0.123 +- 0.002"),
     "friction_coefficient": (0.1301, 0.007, "1", "mu, summed over elements 0.130 +- 0.007"),
     "contact_area": (2.5e-6, 3e-7, "m^2", "contact area A 2.5 +- 0.3 mm^2"),
+    "contact_area_corrected": (2.31e-6, 4e-8, "m^2", "A, perimeter-corrected 2.31 +- 0.04 mm^2"),
     "contact_area_share": (0.31, 0.04, "1", "A/A0 0.31 +- 0.04"),
     "plastic_area": (0.7e-6, 0.0, "m^2", "plastic area 0.7 mm^2"),
     "max_pressure": (8.1e8, math.inf, "Pa", "maximum pressure p_max 810 unbounded (not usable) MPa"),
@@ -116,7 +117,7 @@ def test_the_table_has_each_number_in_its_unit() -> None:
     assert head == "status cycled, 2 x 3 elements, method dense"
     assert (note, last) == ("note: c > d", "warning: a < b")
     assert [" ".join(row.split()) for row in rows] == [row[3] for row in SHOWN.values()]
-    assert display.line(MADE) == "<Solution cycled, 2 x 3: mu = 0.123 +- 0.002, A = 2.5 +- 0.3 mm^2>"
+    assert display.line(MADE) == "<Solution cycled, 2 x 3: mu = 0.123 +- 0.002, A = 2.31 +- 0.04 mm^2>"
 
 
 def test_the_map_has_x_to_the_right_and_y_up_and_the_maximum_of_each_cell() -> None:

@@ -142,13 +142,13 @@ def test_a_frame_has_units_and_named_parameters_as_columns() -> None:
 # --- error bars, scatter, curves ---
 
 
-MU = "friction_coefficient_corrected"
+MU, AREA = "friction_coefficient_corrected", "contact_area_corrected"
 
 
 def row(realisation: int, mu: float, area: float = 1.0, **others: object) -> Row:
     """A row whose errors are 0.01 of mu and unbounded for A."""
     made = {"realisation": realisation, "status": "converged", MU: mu, "warnings": ""}
-    made |= {f"{MU}_error": 0.01, "contact_area": area, "contact_area_error": math.inf}
+    made |= {f"{MU}_error": 0.01, AREA: area, f"{AREA}_error": math.inf}
     return dict.fromkeys(COORDINATES) | made | others
 
 
@@ -160,7 +160,9 @@ def test_error_and_scatter() -> None:
     assert (mu.points, mu.biased) == (1, 0)
     assert (area.error, area.scatter, area.biased) == (math.inf, 0.0, 1)
     assert [found.scatter for found in quality_of([row(0, 0.1)])] == [None, None]
-    assert quality_of([row(0, 0.1, contact_area_error=None)])[1].error == math.inf  # as a store keeps it
+    assert (
+        quality_of([row(0, 0.1, contact_area_corrected_error=None)])[1].error == math.inf
+    )  # as a store keeps it
 
 
 @pytest.mark.parametrize(("wide", "narrow"), [(2, 1), (1, 2)])
@@ -189,11 +191,11 @@ def test_points_of_a_curve() -> None:
     assert (first.x, first.realisations, second.realisations) == (1.0, 2, 1)
     assert (first.mean, first.scatter, first.error) == pytest.approx((0.2, math.sqrt(0.02), 0.02))
     assert second == Point(2.0, 0.2, 0.0, 0.01, 1)
-    assert curves(rows, "load", "contact_area")[None][0].error == math.inf
+    assert curves(rows, "load", AREA)[None][0].error == math.inf
     unbounded = [one | {f"{MU}_error": None} for one in rows]  # as a store keeps it
     assert curves(unbounded, "load", MU)[None][1].error == math.inf
     with pytest.raises(InputError, match="--x"):
-        curves(rows, "status", "contact_area")
+        curves(rows, "status", AREA)
 
 
 def test_means_bars_and_bands_are_in_the_units_of_the_axes(
