@@ -36,8 +36,8 @@ def coverage(documents: Mapping[str, Any]) -> str:
     """Show the coverage of the reference by error bars of mu on single grids, by class of scene."""
     text = (
         "Error bars of 95 % on single grids of 48 to 128 elements against 384, on random scenes drawn after "
-        "the constants were fitted. *At worst*: the "
-        "reference is off by its own bound, against the error bar. *Usable*: the bar is at most half "
+        "the constants were fitted. *At worst*: the share if every "
+        "reference erred by its bound. *Usable*: the bar is at most half "
         "of the number. *Error bar over error* is a median. Here is μ, corrected; A and p_max stand at the "
         "[end](#coverage-of-a-and-p_max)."
     )
