@@ -35,7 +35,7 @@ def table_3(found: Sequence[Number]) -> str:
         f"On the fine mesh {sum(n.within for n in finest)} of {len(finest)} numbers agree within u. "
         "Table 1's ball is pressed on a flat by 70 N; rough numbers are means over 75 random surfaces. "
         "Half-spaces are named by their rms roughness. E is computed less printed. "
-        "u (95 %) contains the sampling of random surfaces and the rounding of the printed number and inputs. "
+        "u (95 %) contains sampling of random surfaces and rounding of the printed number and inputs. "
         "A number agrees if abs(E) is at most u."
     )
     return listing("Table 3 of the paper", text, rows, TABLE_3)
