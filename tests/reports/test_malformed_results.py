@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from reports.generator import render
 from reports.results import ResultFileError, check
-from tests.reports.sample import ERRATUM, TEXTBOOK, case, results
+from tests.reports.sample import ERRATUM, TEXTBOOK, UNJUDGED, case, results
 from tests.verification.cli.children import Ended, one_line
 from verification.cli import main
 
@@ -89,6 +89,16 @@ DISHONEST = {
 def test_a_status_that_does_not_follow_from_the_numbers_is_refused(name: str) -> None:
     with pytest.raises(ResultFileError):
         check(results(case("a/1") | DISHONEST[name]))
+
+
+def test_a_case_disproved_before_a_number_was_found_is_a_result() -> None:
+    """Its note says by what; without one, or with half of the numbers, the file is refused."""
+    found = case("a/1", "fail") | UNJUDGED | {"note": "the area is 2, 3 in the committed comparison"}
+    check(results(found))
+    shown_or_refused(results(found), None)
+    for half in ({"note": ""}, {"value": 1.0}, {"status": "pass"}):
+        with pytest.raises(ResultFileError):
+            check(results(found | half))
 
 
 def test_data_that_its_figure_cannot_show_is_one_line(
