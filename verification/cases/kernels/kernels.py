@@ -124,7 +124,7 @@ def references_agree() -> Measured:
     return Measured(value=max(*errors["normal"], *errors["tangential"]), data={"points": points, **errors})
 
 
-@case("kernels/integrals-50-digits", metric="at_most", tolerance=TOLERANCE)
+@case("kernels/tables-50-digits", metric="at_most", tolerance=TOLERANCE)
 def table_accuracy() -> Measured:
     """Tables for the convolution against 50-digit values.
 
