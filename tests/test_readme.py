@@ -122,6 +122,17 @@ def test_what_is_said_of_other_numbers_is_of_the_study() -> None:
     assert f"On 40 scenes they cover: {said}." in PAGE_OF_BARS
 
 
+def test_the_coverage_of_the_corrected_area_is_that_of_the_study() -> None:
+    """All classes together, and the three with the least."""
+    table = committed("coverage_corrected")["table"]
+    held = {row["class"]: row["held"] for row in table if row["number"] == "contact_area_corrected"}
+    total = held.pop(None)
+    said = [f"{kind} ({100 * held[kind]:.0f} %)" for kind in ("dimpled flats", "saw teeth", "capped dimples")]
+    assert {kind for kind, share in held.items() if share < 0.95} == {s.split(" (")[0] for s in said}
+    least = f"the least on {said[0]}, {said[1]} and {said[2]}"
+    assert f"| A, perimeter-corrected | {100 * total:.0f} % of the bars cover; {least} |" in PAGE_OF_BARS
+
+
 def test_what_dimpled_flats_miss_is_of_the_study() -> None:
     """Errors of the rows are shares of the computed number; all of these are too small."""
     study = committed("coverage_corrected")

@@ -38,9 +38,9 @@ _TEXTS: Mapping[str, tuple[str, str]] = {
     "first_seed": (
         "whole number",
         "realisation k, from 0, has the seeds `first_seed + 2 k` (upper) and `first_seed + 2 k + 1` (lower); "
-        "not set: 1 with realisations, the scene's own seeds with one",
+        "not set: 1; with a single realisation the scene's seeds",
     ),
-    "normalise": ("true or false", "that of Gaussian parts; not set: as the scene says"),
+    "normalise": ("true or false", "`normalise` of Gaussian parts; not set: as in the scene"),
     "vary": ("table", "what varies: every combination of the values is a point of the study"),
     "solve": ("table", "settings of the solver"),
 }
