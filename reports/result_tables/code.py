@@ -38,8 +38,8 @@ def coverage(documents: Mapping[str, Any]) -> str:
         "Error bars of 95 % on single grids of 48 to 128 elements against 384, on random scenes drawn after "
         "the constants were fitted. *At worst*: the share if every "
         "reference erred by its bound. *Usable*: the bar is at most half "
-        "of the number. *Error bar over error* is a median. Here is μ, corrected; A and p_max stand at the "
-        "[end](#coverage-of-a-and-p_max)."
+        "of the number. *Error bar over error* is a median. Here is μ, corrected; then follow "
+        "[A and p_max](#coverage-of-a-and-p_max)."
     )
     return listing("Coverage of error bars", text, _covered(documents, MU), COVERAGE)
 
@@ -113,11 +113,11 @@ def accuracy_costs(costs: Mapping[str, Any]) -> str:
             rows.append((one["class"], label, *cells, link("accuracy_costs")))
     head = ("class of scenes", "number", *(f"{100 * demand:g} %" for demand in demands), "file")
     text = (
-        "Coarsest grid (seconds) that keeps the relative error on itself and all finer ones, against a "
-        "grid of 2048² whose error bar is added, with friction and slopes. A median of three realisations "
-        "is given only where each of them meets the demand. *> 1024²*: at least one meets it on no grid, "
-        "because it needs a finer one or its reference is itself uncertain; in brackets how many meet it, "
-        "and the finest grid that these take."
+        "Coarsest grid (seconds) from which all relative errors stay below the demand. The reference has "
+        "2048², and its error bar is added; friction and slopes are included. A median of three "
+        "realisations is given only where each of them meets the demand. *> 1024²*: at least one misses it "
+        "on all grids (too coarse, or reference uncertain); in brackets how many meet it, and their finest "
+        "grid."
     )
     return section("Cost and accuracy", text, head, rows)
 
