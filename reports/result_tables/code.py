@@ -38,8 +38,8 @@ def coverage(documents: Mapping[str, Any]) -> str:
         "Error bars of 95 % on single grids of 48 to 128 elements against 384, on random scenes drawn after "
         "the constants were fitted. *At worst*: the share if every "
         "reference erred by its bound. *Usable*: the bar is at most half "
-        "of the number. *Error bar over error* is a median. Here is μ, corrected; then follow "
-        "[A and p_max](#coverage-of-a-and-p_max)."
+        "of the number. *Error bar over error* is a median. Here is μ, corrected; A and p_max stand at the "
+        "[end](#coverage-of-a-and-p_max)."
     )
     return listing("Coverage of error bars", text, _covered(documents, MU), COVERAGE)
 
