@@ -9,7 +9,6 @@ from refimpl.accuracy.refinement import check_accuracy, tolerance_for
 from refimpl.driver.limits import Limits
 from refimpl.errors import InputError, keep_doubles, require_number, require_one_of, size_text
 from refimpl.grid import Grid
-from refimpl.measured.areal_parameters import implausible_slope
 from refimpl.model.friction import is_frictionless
 from refimpl.model.problem import Terms
 from refimpl.planning.plan import DECISION_GRID, LARGEST_DENSE, METHODS, Method, Plan, make_plan, memory_of
@@ -96,19 +95,7 @@ class Options:
         if max(scene.lengths) < _SMALL_DOMAIN:
             size = f"the domain is only {size_text(scene.lengths)} m (units of the map, or its pixel?)"
             allowed = f"{size}; {allowed}"
-        if scene.load > most:
-            self._refuse_doubtful_maps()
         require_number("load", scene.load, allowed, at_most=most)
-
-    def _refuse_doubtful_maps(self) -> None:
-        for name in ("lower", "upper"):
-            for k, part in enumerate(self.scene.parts(name)):
-                if part.pitch(self.scene.lengths) is None:
-                    continue
-                for *_, doubt in implausible_slope(*part.data_points(self.solve_grid)):
-                    too_much = f"its {size_text(self.scene.lengths)} m do not bear {self.scene.load} N"
-                    allowed = f"heights of plausible slopes: {doubt} ({too_much})"
-                    raise InputError(f"{name}.surface[{k}]", part.label, allowed)
 
     def _check_strains(self) -> None:
         """Refuse tau, loads and approaches beyond a strain of 1e6: squares of slopes would overflow."""

@@ -276,7 +276,7 @@ class MeasuredSurface(Surface):
         return min(self._oriented.reading.pixel)
 
     def data_points(self, grid: Grid) -> tuple[Array, tuple[float, float]]:
-        return self._central(grid.lengths)[2], self._oriented.reading.pixel
+        return self._central(grid.lengths)[2], self._under(grid.lengths).reading.pixel
 
     def notes(self, grid: Grid) -> tuple[str, ...]:
         """Return the notes on preparation, the form subtracted, points that stand out and filled ones."""

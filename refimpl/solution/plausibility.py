@@ -11,7 +11,6 @@ from contextlib import contextmanager
 
 from refimpl.errors import InputError
 from refimpl.measured.areal_parameters import implausible_slope
-from refimpl.measured.measured_surface import MeasuredSurface
 from refimpl.model.friction import friction_coefficient_at
 from refimpl.model.materials import Material
 from refimpl.planning.plan import Plan
@@ -116,8 +115,8 @@ def _material(name: str, material: Material, tau: float) -> Iterator[ModelWarnin
 def _surface(name: str, scene: Scene) -> Iterator[ModelWarning]:
     shorter, longer = min(scene.lengths), max(scene.lengths)
     for part in scene.parts(name):
-        if isinstance(part, MeasuredSurface):
-            _, z, pixel = part.levelled(scene.lengths)
+        if part.pitch(scene.lengths) is not None:
+            z, pixel = part.data_points(scene.grid(scene.default_grid))
             for slope, bound, text in implausible_slope(z, pixel):
                 yield _warning(slope, bound, f"{name}: {part.label}: {text}")
         if isinstance(part, Sphere) and abs(part.radius) < longer:

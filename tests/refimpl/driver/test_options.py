@@ -197,12 +197,12 @@ def test_a_cap_that_pressures_reach_costs_both_solves(monkeypatch: pytest.Monkey
 @pytest.mark.parametrize(
     ("heights", "side", "said"),
     [
-        (1e-6, 1e-5, r"lower.surface\[0\] = 'array': expected heights of .*: rms slope .* unit"),
+        (1e-6, 1e-5, r"load = 2.0: expected at most 0.02 N, .*; lower: array: rms slope .* unit"),
         (1e-9, 1e-6, r"load = 2.0: expected the domain is only 1e-06 x 1e-06 m \(units"),
         (1e-8, 1e-5, r"load = 2.0: expected at most 0.02 N, the softer"),
     ],
 )
-def test_sizes_of_a_map_are_doubted_before_its_load(heights: float, side: float, said: str) -> None:
+def test_sizes_of_a_map_are_doubted_with_its_load(heights: float, side: float, said: str) -> None:
     z = heights * np.random.default_rng(1).normal(size=(64, 64))
     scene = rf.Scene(BALL, rf.Body(SOFT, z), rf.Friction(1e6, 0.05), 2.0, side=side)
     with pytest.raises(rf.InputError, match=f"^{said}"):
