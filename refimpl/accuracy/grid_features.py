@@ -13,8 +13,8 @@ from refimpl.accuracy.contact_edge import NO_FACES, edge_faces, rim_faces, wall_
 from refimpl.accuracy.iteration_error import CORRECTED, merged, reported_numbers
 from refimpl.accuracy.peak import NO_PEAK, Peak, deepest, highest, on_crest
 from refimpl.grid import Array, Grid, inner, second_differences
-from refimpl.grid.contact_patches import symmetry_multiplicity
 from refimpl.grid.straight_edges import NO_STRAIGHT_EDGES, StraightEdges, straight_edges
+from refimpl.grid.symmetry import symmetry_multiplicity
 from refimpl.model.certificate import State
 from refimpl.model.forces import perimeter_corrected_area
 from refimpl.model.friction import friction_per_area

@@ -17,6 +17,7 @@ from refimpl.solution.plausibility import doubting
 from refimpl.solution.solution import Solution, assemble
 
 
+# Long by the meaning of its options: what it does are the last 20 lines.
 @np.errstate(under="ignore")  # whatever the caller's settings
 def solve(
     scene: Scene,

@@ -199,6 +199,7 @@ def load_rounding(terms: float, load: float) -> float:
     return min(_MOST_ROUNDING, _LOAD_ROUNDING * _EPS * terms / load)
 
 
+# Long as one list of what a state holds: parts of it would pass a dozen arrays to each other.
 def certify(
     problem: Problem,
     operator: Influence,

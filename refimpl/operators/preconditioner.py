@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from refimpl.grid import Array, Mask
-from refimpl.operators.coarse_grid import BlockMeans
+from refimpl.operators.block_means import BlockMeans
 from refimpl.operators.influence import WindowInfluence
 from refimpl.operators.transforms import fourier, threads
 

@@ -23,10 +23,9 @@ def cause_of_failure(evidence: Evidence) -> str | None:
 def _causes(evidence: Evidence) -> Iterator[str]:
     problem, state, load = evidence.problem, evidence.state, evidence.problem.load
     most = problem.largest_load(state.slopes)
-    if load is not None and not load <= most:
-        yield (
-            f"at the hardness everywhere the contact carries {most:.6g} N at most on the slopes of this state"
-        )
+    if load is not None and not load <= most:  # so that NaN counts as more, here and below
+        at_most = f"{most:.6g} N at most"
+        yield f"at the hardness everywhere the contact carries {at_most} on the slopes of this state"
     borne = evidence.scene.materials.reduced_modulus * problem.grid.nominal_area
     if load is not None and not load <= borne:
         times = f"{load / borne:.3g} times"
@@ -36,9 +35,8 @@ def _causes(evidence: Evidence) -> Iterator[str]:
         above = f"{strength:.3g}, above {_STRONG_COUPLING:g}"
         yield f"coupling beta c / a = {above}: lagged updates do not contract"
     held = state.traction - problem.friction.slope * state.pressure
-    carried = abs(
-        problem.load_weights(state.slopes, held)[1]
-    )  # by tau, on the slopes that it makes by itself
+    _, by_tau = problem.load_weights(state.slopes, held)  # on the slopes that tau makes by itself
+    carried = abs(by_tau)
     if load is not None and not carried <= load:
         yield f"tau on slopes carries {carried / load:.3g} times the load"
     excluded, contact = np.count_nonzero(state.excluded), np.count_nonzero(state.contact)

@@ -16,8 +16,8 @@ from refimpl.accuracy.grid_features import GridFeatures, slope_sampling_error
 from refimpl.accuracy.peak import NO_PEAK, Peak, deepest, highest
 from refimpl.driver.reference import solve_reference
 from refimpl.grid import Array, Grid
-from refimpl.grid.contact_patches import symmetry_multiplicity
 from refimpl.grid.straight_edges import NO_STRAIGHT_EDGES
+from refimpl.grid.symmetry import symmetry_multiplicity
 from refimpl.model.certificate import State
 from refimpl.model.forces import EDGE_SHARE
 from refimpl.model.problem import Problem

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from refimpl.grid import Grid, Mask
-from refimpl.grid.contact_patches import patch_sizes, symmetry_multiplicity
+from refimpl.grid.contact_patches import patch_sizes
 from refimpl.grid.straight_edges import NO_STRAIGHT_EDGES, StraightEdges, straight_edges
+from refimpl.grid.symmetry import symmetry_multiplicity
 
 SQUARE = {repeats: Grid((24, 24), (1.0, 1.0), repeats) for repeats in (False, True)}
 OBLONG = {repeats: Grid((24, 24), (1.0, 2.0), repeats) for repeats in (False, True)}

@@ -7,7 +7,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.grid import Grid, Mask, Window
-from refimpl.operators.coarse_grid import BlockMeans
+from refimpl.operators.block_means import BlockMeans
 from refimpl.operators.fft import Counter, FFTInfluence
 from refimpl.operators.influence import WindowInfluence, window_influence
 from refimpl.operators.kernel_tables import unit_table

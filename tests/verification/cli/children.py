@@ -80,7 +80,7 @@ def started(arguments: list[str], folder: Path) -> subprocess.Popen[str]:
 
 
 def running(pid: int) -> bool:
-    """Whether a process is there and no zombie, which only its parent could bury."""
+    """Whether a process runs: one that ended stays as a zombie until its parent has read its status."""
     return psutil.pid_exists(pid) and psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
 
 
