@@ -55,7 +55,7 @@ def test_what_is_left_to_the_night_is_there() -> None:
     assert NIGHTLY - {case.id for case in QUICK} == set()
 
 
-@pytest.mark.parametrize("cases", _parts())
+@pytest.mark.parametrize("cases", list(_parts()))
 def test_the_cases_of_a_module_pass(cases: list[Case]) -> None:
     """In one process and in their order, for they share solutions; all of them, whichever fails."""
     results = [case.run() for case in cases]

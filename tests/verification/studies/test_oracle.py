@@ -15,6 +15,8 @@ from verification.stress_tests import judge
 from verification.stress_tests.axes.contacts import on, sheared
 from verification.stress_tests.oracle import Exactly, Guess, NotSettled, Oracle
 
+pytestmark = pytest.mark.filterwarnings("ignore::refimpl.SurfaceWarning")  # few elements, for enumeration
+
 BALL = pressed(lower=POLYMER, load=30.0, direction=0.7, friction=rf.Friction(1e5, 0.3))
 
 
