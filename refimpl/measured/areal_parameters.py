@@ -13,7 +13,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from refimpl.grid import Array
+from refimpl.grid import Array, inner
 from refimpl.surfaces.noise_lattice import DECAY
 from refimpl.surfaces.statistics import kurtosis, rms_height, skewness
 
@@ -47,7 +47,7 @@ def developed_area(z: Array, pixel: Pixel) -> float:
 
 def mean_square_slopes(z: Array, pixel: Pixel) -> Pixel:
     """Return the mean squares of dz/dx and dz/dy, by differences of neighbours."""
-    x, y = (_mean_square(np.diff(z, axis=k) / pixel[k]) for k in (0, 1))
+    x, y = (mean_square(np.diff(z, axis=k) / pixel[k]) for k in (0, 1))
     return x, y
 
 
@@ -89,7 +89,7 @@ def _reduced(beyond: Array) -> float:
 def nayak(z: Array, pixel: Pixel) -> float:
     """Return Nayak's ``m0 m4 / m2^2`` of profiles along x and y, averaged; second differences for m4."""
     m2 = sum(mean_square_slopes(z, pixel)) / 2.0
-    m4 = sum(_mean_square(np.diff(z, 2, axis=k) / pixel[k] ** 2) for k in (0, 1)) / 2.0
+    m4 = sum(mean_square(np.diff(z, 2, axis=k) / pixel[k] ** 2) for k in (0, 1)) / 2.0
     return float(np.nanvar(z)) * m4 / m2**2 if m2 > 0 else math.nan
 
 
@@ -100,10 +100,13 @@ def squared(transform: NDArray[np.complex128]) -> Array:
     return power
 
 
-def _mean_square(values: Array) -> float:
-    """Return the mean square; NaN where nothing was measured: a map may have no two neighbours."""
+def mean_square(values: Array, nothing: float = math.nan) -> float:
+    """Return the mean square of the finite values, and ``nothing`` where there are none."""
+    total = inner(values, values)
+    if values.size and math.isfinite(total):
+        return total / values.size
     known = values[np.isfinite(values)]
-    return float(np.mean(known**2)) if known.size else math.nan
+    return float(np.mean(known**2)) if known.size else nothing
 
 
 @dataclass(frozen=True)

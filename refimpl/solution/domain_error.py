@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from refimpl.accuracy.iteration_error import Uncertainty, reported_numbers
-from refimpl.grid import Array, Grid, inner
+from refimpl.grid import Array, Grid
+from refimpl.measured.areal_parameters import mean_square
 from refimpl.model.certificate import State
 from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem
@@ -112,7 +113,7 @@ def unseen_share(z: Array, periodic: bool = False) -> float:
     """
     second = _interpolation_loss(z, periodic)
     few = min(z.shape) < 2 * _LEAST_POINTS  # every fourth point says nothing
-    quarters = [z[i::2, j::2] for i in (0, 1) for j in (0, 1)]  # all, for a mirror image has the same share
+    quarters = [z[i::2, j::2].copy() for i in (0, 1) for j in (0, 1)]  # a mirror image has the same share
     fourth = 0.0 if few else float(np.mean([_interpolation_loss(quarter, periodic) for quarter in quarters]))
     return second * (min(1.0, second / fourth) if fourth > 0 else 1.0)
 
@@ -122,30 +123,31 @@ def _interpolation_loss(z: Array, periodic: bool) -> float:
     missed = total = 0.0
     for values in (z, z.T):
         if len(values) < _LEAST_POINTS:
-            missed, total = missed + _mean_square(values), total + _mean_square(values)
+            missed, total = missed + mean_square(values, 0.0), total + mean_square(values, 0.0)
             continue
-        around = np.concatenate([values, values[: int(periodic)]])
-        total += _mean_square(np.diff(around, axis=0))
-        values = np.concatenate([values[len(values) - 3 * periodic :], values, values[: 3 * periodic]])
-        middle = (9 * (values[2:-4] + values[4:-2]) - values[:-6] - values[6:]) / 16
-        missed += _mean_square(values[3:-3] - middle)
+        total += mean_square(_steps(values, periodic), 0.0)
+        if periodic:
+            values = np.concatenate([values[-3:], values, values[:3]])
+        left = values[2:-4] + values[4:-2]  # in one array: a map has many points
+        left *= -9
+        left += values[:-6]
+        left += values[6:]
+        left /= 16
+        left += values[3:-3]
+        missed += mean_square(left, 0.0)
     return missed / total if total > 0 else 0.0
 
 
-def _mean_square(values: Array) -> float:
-    total = inner(values, values)
-    if math.isfinite(total) and values.size:
-        return total / values.size
-    known = values[np.isfinite(values)]  # missing points
-    return float((known**2).mean()) if known.size else 0.0
+def _steps(values: Array, periodic: bool) -> Array:
+    """Return the differences of neighbours along the first axis, around its end if periodic."""
+    return np.diff(values, axis=0, append=values[:1]) if periodic else np.diff(values, axis=0)
 
 
 def _squared_gradient(z: Array, spacings: tuple[float, float], periodic: bool) -> float:
     """Return the mean square of neighbouring points' differences over their distance, both axes."""
     total = 0.0
     for values, spacing in zip((z, z.T), spacings, strict=True):
-        around = np.concatenate([values, values[: int(periodic)]])
-        total += _mean_square(np.diff(around, axis=0)) / spacing**2
+        total += mean_square(_steps(values, periodic), 0.0) / spacing**2
     return total
 
 
