@@ -72,7 +72,8 @@ def wall_pressure(pressure: Array, clearance: Array, grid: Grid) -> float:
 def _ways(pressure: Array, clearance: Array, grid: Grid) -> list[tuple[Array, Array]]:
     """Return the pressure and gap around the contact with a frame of two rows, seen from all four sides."""
     box = grid.window_around(pressure > 0, margin=2).slices
-    p, gap = (grid.padded(field[box], 2) for field in (pressure, np.where(pressure > 0, 0.0, clearance)))
+    gap = np.where(pressure[box] > 0, 0.0, clearance[box])
+    p, gap = (grid.padded(field, 2) for field in (pressure[box], gap))
     return [(p, gap), (p.T, gap.T), (p[::-1], gap[::-1]), (p.T[::-1], gap.T[::-1])]
 
 

@@ -97,9 +97,11 @@ def highest(field: Array, grid: Grid) -> Peak:
 
 def deepest(field: Array) -> Peak:
     """Return the peak of the field turned over, without regard to others or to contact."""
-    i, j = (index + _REACH for index in np.unravel_index([np.argmin(field)], field.shape))
-    lines = _lines(-np.pad(field, _REACH, mode="edge"), i, j, _REACH)
-    height, drop, rest = (float(value[0]) for value in _parabolas(lines))
+    i, j = np.unravel_index(np.argmin(field), field.shape)
+    near = np.arange(-_REACH, _REACH + 1)
+    along, across = (np.clip(at + near, 0, n - 1) for at, n in zip((i, j), field.shape, strict=True))
+    lines = -np.array([field[along, j], field[i, across]])
+    height, drop, rest = (float(value[0]) for value in _parabolas(lines[:, :, None]))
     return Peak(height, drop, rest)
 
 

@@ -1,6 +1,15 @@
 """The grid of traction elements, windows of it, and fields on it."""
 
-from refimpl.grid.fields import Array, Mask, differences, inner, read_only, resampled, second_differences
+from refimpl.grid.fields import (
+    Array,
+    Mask,
+    differences,
+    inner,
+    mean_square,
+    read_only,
+    resampled,
+    second_differences,
+)
 from refimpl.grid.grid import MAX_COUNT, Grid
 from refimpl.grid.window import Shape, Window
 
@@ -13,6 +22,7 @@ __all__ = [
     "Window",
     "differences",
     "inner",
+    "mean_square",
     "read_only",
     "resampled",
     "second_differences",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,6 +23,15 @@ def inner(a: Array, b: Array) -> float:
         return float(np.vdot(a, b))
     rows = np.vecdot(a, b) if a.shape[1] <= _ONE_THREAD else np.einsum("ij,ij->i", a, b)
     return float(rows.sum())
+
+
+def mean_square(values: Array, nothing: float = math.nan) -> float:
+    """Return the mean square of the finite values, and ``nothing`` where there are none."""
+    total = inner(values, values)
+    if values.size and math.isfinite(total):
+        return total / values.size
+    known = values[np.isfinite(values)]
+    return float(np.mean(known**2)) if known.size else nothing
 
 
 def read_only(values: Array) -> Array:

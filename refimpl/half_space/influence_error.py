@@ -98,7 +98,7 @@ def slope_error(slopes: Slopes, pressure: Array, pair: Pair, *, plane: bool = Fa
     squared = slopes.tan_x[loaded] ** 2 + slopes.tan_y[loaded] ** 2
     if not squared.any():
         return SlopeError(0.0, 0.0, 0.0, 0.0)
-    rms = math.atan(math.sqrt(slopes.mean_square(np.maximum(pressure, 0.0))))
+    rms = math.atan(math.sqrt(float(np.average(squared, weights=pressure[loaded]))))
     steepest = math.atan(math.sqrt(float(squared.max())))
     if plane or min(pair.lower.nu, pair.upper.nu) < 0:
         return SlopeError(rms, steepest, *_plane_errors(np.array([rms, steepest]), pair))

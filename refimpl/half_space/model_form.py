@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from refimpl.grid import Array, Grid, Mask
+from refimpl.grid import Array, Grid, Mask, mean_square
 from refimpl.half_space.boundary_perturbation import Contact, gap_changes
 from refimpl.model.certificate import State
 from refimpl.model.problem import Problem
@@ -79,8 +79,7 @@ def steepness(problem: Problem, contact: Mask) -> float:
     total = 0.0
     shares = 1 - pair.upper_share, pair.upper_share
     for share, heights in zip(shares, problem.windowed(wider).heights, strict=True):
-        along_x, along_y = (along[place] for along in grid.gradient(heights))
-        total += share * float(np.mean(along_x**2 + along_y**2))
+        total += share * sum(mean_square(along[place]) for along in grid.gradient(heights))
     return 2 * total
 
 

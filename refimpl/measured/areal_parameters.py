@@ -13,7 +13,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from refimpl.grid import Array, inner
+from refimpl.grid import Array, mean_square
 from refimpl.surfaces.noise_lattice import DECAY
 from refimpl.surfaces.statistics import kurtosis, rms_height, skewness
 
@@ -98,15 +98,6 @@ def squared(transform: NDArray[np.complex128]) -> Array:
     power = transform.real**2
     power += transform.imag**2
     return power
-
-
-def mean_square(values: Array, nothing: float = math.nan) -> float:
-    """Return the mean square of the finite values, and ``nothing`` where there are none."""
-    total = inner(values, values)
-    if values.size and math.isfinite(total):
-        return total / values.size
-    known = values[np.isfinite(values)]
-    return float(np.mean(known**2)) if known.size else nothing
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from refimpl.grid import Array, Grid, Mask, Window
+from refimpl.grid import Array, Grid, Mask, Window, inner
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,9 @@ class Slopes:
     def mean_square(self, weights: Array) -> float:
         """Return the weighted mean of ``tan^2 theta_x + tan^2 theta_y``; 0 where the weights vanish."""
         total = float(np.sum(weights))
-        return float(np.sum((self.tan_x**2 + self.tan_y**2) * weights)) / total if total > 0 else 0.0
+        if self.is_flat or total <= 0:
+            return 0.0
+        return sum(inner(tangent * weights, tangent) for tangent in (self.tan_x, self.tan_y)) / total
 
     def distance(self, other: Slopes, where: Mask) -> float:
         """Return the largest difference of the tangents on the marked elements."""

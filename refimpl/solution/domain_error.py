@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from refimpl.accuracy.iteration_error import Uncertainty, reported_numbers
-from refimpl.grid import Array, Grid
-from refimpl.measured.areal_parameters import mean_square
+from refimpl.grid import Array, Grid, mean_square
 from refimpl.model.certificate import State
 from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem

@@ -165,8 +165,8 @@ def _error_at_slopes(evidence: Evidence) -> SlopeError:
         return evidence.slope_error
     problem, state = evidence.problem, evidence.state
     near = problem.grid.window_around(state.contact, margin=1).slices
-    moved = 0.5 * (state.displacement_upper - state.displacement_lower)
-    surface = (problem.mean_surface + moved)[near]
+    surface = 0.5 * (state.displacement_upper[near] - state.displacement_lower[near])
+    surface += problem.mean_surface[near]
     slopes = Slopes.of_surface(surface, problem.grid, 0.0)
     plane = constant_along_an_axis(problem.gap, problem.mean_surface)
     return slope_error(slopes, state.pressure[near], problem.pair, plane=plane)
