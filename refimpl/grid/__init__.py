@@ -7,6 +7,7 @@ from refimpl.grid.fields import (
     inner,
     mean_square,
     read_only,
+    repeated,
     resampled,
     second_differences,
 )
@@ -24,6 +25,7 @@ __all__ = [
     "inner",
     "mean_square",
     "read_only",
+    "repeated",
     "resampled",
     "second_differences",
 ]

@@ -108,6 +108,11 @@ def differences(values: Array, axis: int, *, periodic: bool = False) -> Array:
     return found
 
 
+def repeated(values: Array, before: int, after: int, *, periodic: bool) -> Array:
+    """Return the rows with so many that a periodic field has before its first and after its last."""
+    return np.concatenate([values[len(values) - before :], values, values[:after]]) if periodic else values
+
+
 def second_differences(values: Array, axis: int, *, periodic: bool = False) -> Array:
     """Return ``z_(k-1) - 2 z_k + z_(k+1)``: at a free border that of the neighbour; zero on two elements.
 

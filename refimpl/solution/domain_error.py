@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from refimpl.accuracy.iteration_error import Uncertainty, reported_numbers
-from refimpl.grid import Array, Grid, mean_square
+from refimpl.grid import Array, Grid, mean_square, repeated
 from refimpl.model.certificate import State
 from refimpl.model.friction import friction_per_area
 from refimpl.model.problem import Problem
@@ -124,9 +124,8 @@ def _interpolation_loss(z: Array, periodic: bool) -> float:
         if len(values) < _LEAST_POINTS:
             missed, total = missed + mean_square(values, 0.0), total + mean_square(values, 0.0)
             continue
-        total += mean_square(_steps(values, periodic), 0.0)
-        if periodic:
-            values = np.concatenate([values[-3:], values, values[:3]])
+        total += mean_square(np.diff(repeated(values, 0, 1, periodic=periodic), axis=0), 0.0)
+        values = repeated(values, 3, 3, periodic=periodic)
         left = values[2:-4] + values[4:-2]  # in one array: a map has many points
         left *= -9
         left += values[:-6]
@@ -137,16 +136,11 @@ def _interpolation_loss(z: Array, periodic: bool) -> float:
     return missed / total if total > 0 else 0.0
 
 
-def _steps(values: Array, periodic: bool) -> Array:
-    """Return the differences of neighbours along the first axis, around its end if periodic."""
-    return np.diff(values, axis=0, append=values[:1]) if periodic else np.diff(values, axis=0)
-
-
 def _squared_gradient(z: Array, spacings: tuple[float, float], periodic: bool) -> float:
     """Return the mean square of neighbouring points' differences over their distance, both axes."""
     total = 0.0
     for values, spacing in zip((z, z.T), spacings, strict=True):
-        total += mean_square(_steps(values, periodic), 0.0) / spacing**2
+        total += mean_square(np.diff(repeated(values, 0, 1, periodic=periodic), axis=0), 0.0) / spacing**2
     return total
 
 
