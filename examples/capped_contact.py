@@ -10,7 +10,7 @@ GRID = int(sys.argv[1]) if len(sys.argv) > 1 else 256
 PICTURE = sys.argv[2] if len(sys.argv) > 2 else "capped_contact.png"
 
 ball = rf.Body(rf.Material(E=200e9, nu=0.30), rf.Sphere(radius=5e-3))
-rough = rf.GaussianRoughness(rms=0.8e-6, correlation_length=30e-6, seed=1)
+rough = rf.GaussianRoughness(rms=0.5e-6, correlation_length=30e-6, seed=2)
 copper = rf.Body(rf.Material(E=118e9, nu=0.34, hardness=0.8e9), rough)
 scene = rf.Scene(ball, copper, rf.Friction(tau=15e6, beta=0.08), load=50.0, side=1e-3)
 

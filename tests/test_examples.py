@@ -23,8 +23,8 @@ EXAMPLES = {
     "fitted_friction": (["64"], "tau = 15.3 MPa (14.3 to 16.3)\nbeta = 0.078 (0.065 to 0.092)"),
     "capped_contact": (
         ["64"],
-        "capped at 0.8 GPa: mu = 0.099 +- 0.003, p_max = 0.80 GPa (converged)\n"
-        "elastic: mu = 0.083 +- 0.011, p_max = 9.61 GPa (converged)",
+        "capped at 0.8 GPa: mu = 0.0989 +- 0.0025, p_max = 0.80 GPa (converged)\n"
+        "elastic: mu = 0.0860 +- 0.0054, p_max = 6.94 GPa (converged)",
     ),
     "two_roughnesses": (
         ["64"],
