@@ -21,7 +21,7 @@ from reports.result_tables.code import (
     codes,
     costs,
     coverage,
-    coverage_of_others,
+    details_of_coverage,
     studies,
 )
 from reports.result_tables.paper import claims, confirmed, hertz, table_3
@@ -34,19 +34,28 @@ PAGE = Path(__file__).with_name("RESULTS.md")
 
 INTRODUCTION = """# Results
 
-- The friction of a rough pair is **not validated**: no experiment was found that states all inputs.
-- {agree} of {printed} printed numbers agree with ours within their uncertainty u.
-- On the fine mesh of Table 3 {fine} of {of_fine} agree.
-- {claims}
-- Of {checks} [checks](#checks) of the code: {statuses} (`recorded`: the tolerance was set from the result).
-- Error bars of μ cover the reference in {covered} of {scenes} random scenes.
+You want a number that was computed here, and the file behind it. Find your question:
 
-The numbers are those of the committed result files. `make report` makes the full report, with every case and
-figure. [results/README.md](results/README.md) names the command behind each file.
-`python -m reports.results_page` writes this page; a test compares the two.
+- Do error bars contain the right value? Those of μ do in {covered} of {scenes} random scenes
+  ([coverage](#coverage-of-error-bars)).
+- Which grid do I need, and how many seconds does it take? See [cost and accuracy](#cost-and-accuracy) and
+  [time](#time).
+- Does μ agree with experiments? The friction of a rough pair is **not validated**: no experiment was found
+  that states all inputs.
+- Are the numbers of the paper reproduced? {agree} of {printed} agree with ours within the uncertainty of the
+  difference. On the fine mesh of [Table 3](#table-3-of-the-paper) {fine} of {of_fine} agree.
+- Do the statements of the paper hold? {claims} See [claims](#claims-of-the-paper) and
+  [errata](#errata-of-the-paper).
+- Does the code pass its own checks? Of {checks} [checks](#checks): {statuses}. The tolerance of a `recorded`
+  check was set from its own result.
+- How do other codes fare? See [solvers in the suite](#solvers-in-the-suite-for-other-solvers).
+
+The paper is that of Karpenko and Akay (2001). Every row names its result file;
+[results/README.md](results/README.md) has the command that made the file. `make report` makes the full
+report, with every case and figure. `python -m reports.results_page` writes this page from the files.
 
 Symbols: μ friction coefficient, A real contact area, p_max maximum contact pressure, σ_e equivalent rms
-roughness of both bodies. Claims quote the paper, where p_max is f_max. ± is a 95 % interval."""
+roughness of both bodies. In quotes of the paper, p_max is f_max. ± is a 95 % interval."""
 
 
 def page(documents: Mapping[str, Any]) -> str:
@@ -55,16 +64,16 @@ def page(documents: Mapping[str, Any]) -> str:
     found = numbers(by_claim(evidence.cases))
     sections = (
         _introduction(documents, evidence, found),
+        coverage(documents),
+        accuracy_costs(documents["accuracy_costs"]),
+        costs(documents["benchmarks"]),
         table_3(found),
         hertz(documents[RUN]),
         claims(evidence),
-        coverage(documents),
-        costs(documents["benchmarks"]),
-        accuracy_costs(documents["accuracy_costs"]),
+        codes(documents["cross_code"]),
         checks(documents, evidence),
         studies(documents),
-        codes(documents["cross_code"]),
-        coverage_of_others(documents),
+        details_of_coverage(documents),
     )
     return "\n\n".join(sections) + "\n"
 

@@ -20,7 +20,8 @@ JUDGED = {
     "contact_area_corrected": "A, perimeter-corrected",
     "max_pressure": "p_max",
 }
-COVERAGE: dict[str, Column] = {
+COVERED = (MU, "contact_area_corrected", "contact_area", "max_pressure")
+DETAILS: dict[str, Column] = {
     "class of scene": "class",
     "number": lambda row: JUDGED[row["number"]],
     "scenes": "scenes",
@@ -33,27 +34,36 @@ COVERAGE: dict[str, Column] = {
 
 
 def coverage(documents: Mapping[str, Any]) -> str:
-    """Show the coverage of the reference by error bars of mu on single grids, by class of scene."""
+    """Show in which share of scenes the error bars of each number cover the reference, by class of scene."""
     text = (
-        "Error bars of 95 % on single grids of 48 to 128 elements against 384, on random scenes drawn after "
-        "the constants were fitted. *At worst*: the share if every "
-        "reference erred by its bound. *Usable*: the bar is at most half "
-        "of the number. *Error bar over error* is a median. Here is μ, corrected; A and p_max stand at the "
-        "[end](#coverage-of-a-and-p_max)."
+        "Does an error bar of 95 % contain the right value? Each class has random scenes, drawn after the "
+        "constants of the error bars were fixed. Each scene is solved on a single grid of 48 to 128 elements "
+        "per side. The right value, the reference, is that on 384 elements. A cell is the share of scenes "
+        "whose error bar covers the reference. μ is the [corrected "
+        "mu](../docs/error-bars.md#corrected-mu-the-edge-bias-removed); A is summed over elements, or "
+        "perimeter-corrected. How long are the error bars, and how sure is the reference? See "
+        "[details](#details-of-coverage)."
     )
-    return listing("Coverage of error bars", text, _covered(documents, MU), COVERAGE)
+    found = {(row["class"], row["number"]): row for row in documents["coverage_corrected"]["table"]}
+    rows: list[Row] = []
+    for name in dict.fromkeys(name for name, _ in found if name):
+        cells = (percent(found[name, number]["held"]) for number in COVERED)
+        rows.append((name, found[name, MU]["scenes"], *cells, link("coverage_corrected")))
+    head = ("class of scene", "scenes", *(JUDGED[number] for number in COVERED), "file")
+    return section("Coverage of error bars", text, head, rows)
 
 
-def coverage_of_others(documents: Mapping[str, Any]) -> str:
-    """Show the same for areas and the maximum pressure."""
-    rows = itertools.chain.from_iterable(_covered(documents, name) for name in JUDGED if name != MU)
-    text = "Columns as [above](#coverage-of-error-bars)."
-    return listing("Coverage of A and p_max", text, rows, COVERAGE)
-
-
-def _covered(documents: Mapping[str, Any], number: str) -> list[Mapping[str, Any]]:
-    table = documents["coverage_corrected"]["table"]
-    return [row for row in table if row["class"] and row["number"] == number]
+def details_of_coverage(documents: Mapping[str, Any]) -> str:
+    """Show coverage with the uncertainty of references and the length of error bars, by number and class."""
+    text = (
+        "*Covered* is as [above](#coverage-of-error-bars). *Covered at worst* is that share if every "
+        "reference erred by the bound of its own error. *Usable* is the share of error bars that are at most "
+        "half of the number. *Error bar over error* divides the error bar by the error that was found; it is "
+        "the median of the class."
+    )
+    table = [row for row in documents["coverage_corrected"]["table"] if row["class"]]
+    rows = [row for number in COVERED for row in table if row["number"] == number]
+    return listing("Details of coverage", text, rows, DETAILS)
 
 
 OWN = {
@@ -81,11 +91,12 @@ def costs(benchmarks: Mapping[str, Any]) -> str:
         "file",
     )
     text = (
-        "Table 1's contact to a relative duality gap of 1e-8, recomputed for every code. Seconds of this "
-        "code: the solver alone; from a scene to numbers with error bars; with friction; with friction and "
-        "slopes. Of other codes: ratio of their time to this code's with error bars, median of the newest "
-        f"run on that grid. Runs are of machines with {' and '.join(_machines(benchmarks['runs']))}, and of "
-        "one thread or more, as the report states."
+        "How long does the contact of the paper's Table 1 take? Every code solves it until its relative "
+        "duality gap, recomputed here, is 1e-8. Four columns have seconds of this code. *Solver* is for the "
+        "pressures alone. *With error bars* goes from a scene to numbers with error bars. The next two add "
+        "friction, then slopes. A *ratio* is the time of another code over that of this code with error "
+        "bars. Numbers are medians of the newest run on the grid. Runs are of machines with "
+        f"{' and '.join(_machines(benchmarks['runs']))}; the report states their numbers of threads."
     )
     return section("Time", text, head, rows)
 
@@ -113,11 +124,12 @@ def accuracy_costs(costs: Mapping[str, Any]) -> str:
             rows.append((one["class"], label, *cells, link("accuracy_costs")))
     head = ("class of scenes", "number", *(f"{100 * demand:g} %" for demand in demands), "file")
     text = (
-        "Coarsest grid (seconds) from which all relative errors stay below the demand. The reference has "
-        "2048², and its error bar is added; friction and slopes are included. A median of three "
-        "realisations is given only where each of them meets the demand. *> 1024²*: at least one misses it "
-        "on all grids (too coarse, or reference uncertain); in brackets how many meet it, and their finest "
-        "grid."
+        "Which grid do you need for an accuracy? A cell names the coarsest grid whose relative error, and "
+        "those of all finer grids, are at most the percentage above; its seconds stand in brackets. Friction "
+        "and slopes are included. An error is that against a grid of 2048², with the error bar of this "
+        "reference added. A class of rough scenes has three realisations: the cell is their median if all of "
+        "them meet the accuracy. Otherwise it is *> 1024²*: some need a finer grid, or a reference of less "
+        "uncertainty. Its brackets state how many meet the accuracy, and the finest grid that these need."
     )
     return section("Cost and accuracy", text, head, rows)
 
@@ -160,7 +172,10 @@ def checks(documents: Mapping[str, Any], evidence: Evidence) -> str:
     listed = ", ".join(f"{count} {status}" for count, status in counted)
     bad = [f"`{case['id']}` ({case['status']})" for case in evidence.cases if case["status"] != "pass"]
     text = f"{len(evidence.cases)} different checks: {listed}. Not passed: {', '.join(bad) or 'none'}."
-    text += " *Recorded*: within a tolerance set from the result, which guards against changes alone."
+    text += (
+        " The tolerance of a *recorded* check was set from its own result, so it detects changes only. "
+        "Names of checks have `*` for any letters. *Date* and *commit* are those of the run."
+    )
     return section("Checks", text, ("file", "checks", *COUNTED, "date", "commit"), rows)
 
 
@@ -183,7 +198,11 @@ def studies(documents: Mapping[str, Any]) -> str:
         ("extreme inputs", verdicts, link("extremes")),
         ("random examples of invariants", tried, link("hypothesis")),
     ]
-    text = "How far the verification itself can be trusted, and what broad searches found."
+    text = (
+        "Two searches for wrong results. Contacts of extreme inputs were judged by an independent "
+        "computation; a detected failure is a result whose status says not to use it. Random contacts were "
+        "tried on rules that every solution keeps, the invariants."
+    )
     return section("Studies", text, ("study", "result", "file"), rows)
 
 
@@ -196,5 +215,9 @@ def codes(cross_code: Mapping[str, Any]) -> str:
         **{status: f"{{counts[{status}]}}" for status in STATUSES},
         "file": lambda entrant: link("cross_code"),
     }
-    text = "Unavailable: outside a solver's abilities. A negative control is set up wrongly on purpose."
+    text = (
+        "Which codes pass the [suite](../docs/check-your-solver.md)? The table counts the cases by verdict. "
+        "*Unavailable* cases are outside the abilities of the solver. A negative control is set up wrongly "
+        "on purpose, to test that the suite detects it."
+    )
     return listing("Solvers in the suite for other solvers", text, cross_code["entrants"], columns)

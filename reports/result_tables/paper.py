@@ -32,11 +32,12 @@ def table_3(found: Sequence[Number]) -> str:
     rows = [n for label in labels for n in found if (n.part, n.label) == ("Table 3", label)]
     finest = fine(found)
     text = (
-        f"On the fine mesh {sum(n.within for n in finest)} of {len(finest)} numbers agree within u. "
-        "Table 1's ball is pressed on a flat by 70 N; rough numbers are means over 75 random surfaces. "
-        "Half-spaces are named by their rms roughness. E is computed less printed. "
-        "u (95 %) contains sampling of random surfaces and rounding of the printed number and inputs. "
-        "A number agrees if abs(E) is at most u."
+        "Are the numbers of Table 3 reproduced? "
+        f"On its fine mesh, 512², {sum(n.within for n in finest)} of {len(finest)} agree. "
+        "A load of 70 N presses the ball of Table 1 on a flat. The first column has the rms roughness of the "
+        "flat. Numbers of rough flats are means over 75 random surfaces. E is the computed number minus the "
+        "printed one. u is the uncertainty of E (95 %): sampling of random surfaces, and rounding of the "
+        "printed number and of the printed inputs. A number agrees if abs(E) is at most u."
     )
     return listing("Table 3 of the paper", text, rows, TABLE_3)
 
@@ -61,8 +62,8 @@ HERTZ: dict[str, Column] = {
 def hertz(run: Mapping[str, Any]) -> str:
     """Show the smooth ball against Hertz' solution."""
     text = (
-        "Smooth ball under 70 N without friction. Errors of quantities are relative, errors of orders of "
-        "convergence absolute."
+        "A smooth ball under 70 N without friction has the exact solution of Hertz. An order of convergence "
+        "states how fast errors fall on finer grids. Errors of orders are differences, all others relative."
     )
     return listing("Hertz contact", text, (c for c in run["cases"] if c["id"].startswith("hertz/")), HERTZ)
 
@@ -105,9 +106,10 @@ def _counted(items: Sequence[Judged]) -> str:
     counts = counted(items)
     listed = ", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count)
     return (
-        f"{confirmed(items)} These are the verdicts on all {len(items)} statements (Karpenko and Akay 2001, "
-        f"text converted by machine), from the worst: {listed}. "
-        "Listed are those that do not hold as printed or need conditions; `make report` shows all."
+        f"Which statements of the paper hold? {confirmed(items)} The table has those that do not hold as "
+        "printed or need conditions, the worst first; `make report` shows all. We read the paper as a text "
+        "converted by machine, so a misprint may be one of the conversion. "
+        f"The verdicts on all {len(items)} statements: {listed}."
     )
 
 
@@ -123,4 +125,8 @@ def errata(evidence: Evidence) -> str:
         "as corrected": "{corrected_error:.2g}",
         "file": lambda erratum: origin(cases[erratum["case"]]),
     }
-    return listing("Errata of the paper", "", evidence.errata, columns)
+    text = (
+        "Which equations and numbers of the paper need a correction? *Measure* names an error that shows it. "
+        "*As printed* is this error with the printed text, *as corrected* with the correction."
+    )
+    return listing("Errata of the paper", text, evidence.errata, columns)
