@@ -21,7 +21,7 @@ def test_the_table_is_that_of_the_record() -> None:
 def at_512(number: Number, codes: frozenset[str] = EVERY) -> list[float]:
     """Medians on the smooth and on the rough flat, on one thread."""
     found = newest(RUNS, codes)
-    spreads = [number(*found[kind, 512, 1]) for kind in ("smooth", "rough")]
+    spreads = [number(*found[kind, 512]) for kind in ("smooth", "rough")]
     return [spread["median"] for spread in spreads if spread is not None]
 
 
@@ -30,9 +30,9 @@ def seconds(code: str, ratios: Ratios, rows: Rows) -> dict[str, float]:
 
 
 def test_error_bars_take_as_long_as_is_said() -> None:
-    """Without friction, on one and two threads, on both flats: the rest of a solve over its solver alone."""
+    """Without friction, on both flats: the rest of a solve over its solver alone."""
     shares: dict[int, list[float]] = {}
-    for (_, M, _), (_, rows) in newest(RUNS).items():
+    for (_, M), (_, rows) in newest(RUNS).items():
         whole, alone = (rows[code]["seconds"]["median"] for code in (OWN, ALONE))
         shares.setdefault(M, []).append(whole / alone - 1)
     (cell,) = row("error bars and warnings")

@@ -1,12 +1,12 @@
 """The table of docs/costs.md, from the record of runs: ``python -m verification.benchmarks --page``.
 
-Of each number of threads the newest run counts in which ours and ASPHER took part with all their set-ups. A
-cell is the range over the rounds, or the ratio of medians where a run recorded no other.
+The newest run on one thread counts in which ours and ASPHER took part with all their set-ups. A cell is the
+range over the rounds, or the ratio of medians where a run recorded no other.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from verification.benchmarks.codes import ALONE, OWN, SHEARED, SLOPED
@@ -52,15 +52,15 @@ TABLE: dict[str, Number] = {
 
 def newest(
     runs: Sequence[Mapping[str, Any]], codes: frozenset[str] = EVERY
-) -> dict[tuple[str, int, int], tuple[Ratios, Rows]]:
-    """Return ratios and rows by surface, grid and threads, of the last run in which all codes took part."""
-    found: dict[tuple[str, int, int], tuple[Ratios, Rows]] = {}
+) -> dict[tuple[str, int], tuple[Ratios, Rows]]:
+    """Return ratios and rows by surface and grid, of the last run on one thread with all codes."""
+    found: dict[tuple[str, int], tuple[Ratios, Rows]] = {}
     for run in runs:
-        if {row["code"] for row in run["rows"]} >= codes:
+        if run["conditions"]["threads"] == 1 and {row["code"] for row in run["rows"]} >= codes:
             for ratios in run["ratios"]:
                 at = ratios["kind"], ratios["M"]
                 rows = {row["code"]: row for row in run["rows"] if (row["kind"], row["M"]) == at}
-                found[(*at, run["conditions"]["threads"])] = ratios, rows
+                found[at] = ratios, rows
     return found
 
 
@@ -69,7 +69,7 @@ def table(runs: Sequence[Mapping[str, Any]]) -> list[list[str]]:
     found = newest(runs)
 
     def cell(number: Number, kind: str, M: int) -> str:
-        return shown(number(*found[at]) for at in found if at[:2] == (kind, M))
+        return shown(number(*found[kind, M]) if (kind, M) in found else None)
 
     return [
         [label, *(" / ".join(cell(number, kind, M) for kind in ("smooth", "rough")) for M in GRIDS)]
@@ -77,16 +77,15 @@ def table(runs: Sequence[Mapping[str, Any]]) -> list[list[str]]:
     ]
 
 
-def shown(numbers: Iterable[Spread | None]) -> str:
-    """Return the range of numbers with their spreads, on any number of threads.
+def shown(number: Spread | None) -> str:
+    """Return the range of a number.
 
-    >>> shown([{"median": 3.1, "least": 2.96, "most": 3.4}, {"median": 12.2}]), shown([None])
-    ('3.0-12', '-')
+    >>> shown({"median": 3.1, "least": 2.96, "most": 12.4}), shown({"median": 12.2}), shown(None)
+    ('3.0-12', '12', '-')
     """
-    known = [number for number in numbers if number is not None]
-    if not known:
+    if number is None:
         return "-"
-    ends = min(n.get("least", n["median"]) for n in known), max(n.get("most", n["median"]) for n in known)
+    ends = number.get("least", number["median"]), number.get("most", number["median"])
     return "-".join(dict.fromkeys(f"{end:.1f}" if end < 9.95 else f"{end:.0f}" for end in ends))
 
 
