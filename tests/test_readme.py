@@ -122,6 +122,17 @@ def test_what_is_said_of_other_numbers_is_of_the_study() -> None:
     assert f"On 40 scenes they cover: {said}." in PAGE_OF_BARS
 
 
+def test_a_requested_accuracy_is_met_as_is_said() -> None:
+    (found,) = (one for one in committed("further")["cases"] if one["id"] == "accuracy/classes")
+    shares = found["data"]["error over accuracy"].values()
+    first, second, third = map(len, shares)
+    worst = max(max(share) for share in shares)
+    assert worst <= 1
+    said = f"{first}, {second} and {third} ended as `CONVERGED`, all with an error below the requested accuracy"
+    assert f"52 further scenes, against 768 elements: {said} (at most {worst:.2f} of it)" in PAGE_OF_BARS
+    assert "met by every converged result of 52 further scenes" in README
+
+
 def test_the_coverage_of_the_corrected_area_is_that_of_the_study() -> None:
     """All classes together, and the three with the least."""
     table = committed("coverage_corrected")["table"]
