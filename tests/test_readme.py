@@ -128,8 +128,8 @@ def test_a_requested_accuracy_is_met_as_is_said() -> None:
     first, second, third = map(len, shares)
     worst = max(max(share) for share in shares)
     assert worst <= 1
-    said = f"52 further scenes, against 768 elements: {first}, {second} and {third} ended as `CONVERGED`, all with"
-    assert f"{said} an error below the requested accuracy (at most {worst:.2f} of it)" in PAGE_OF_BARS
+    said = f"{first}, {second} and {third} ended as `CONVERGED`, all with an error below the requested"
+    assert f"52 further scenes, against 768 elements: {said} accuracy (at most {worst:.2f} of it)" in PAGE_OF_BARS
     assert "met by every converged result of 52 further scenes" in README
 
 
