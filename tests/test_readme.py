@@ -125,11 +125,11 @@ def test_what_is_said_of_other_numbers_is_of_the_study() -> None:
 def test_a_requested_accuracy_is_met_as_is_said() -> None:
     (found,) = (one for one in committed("further")["cases"] if one["id"] == "accuracy/classes")
     shares = found["data"]["error over accuracy"].values()
-    first, second, third = map(len, shares)
     worst = max(max(share) for share in shares)
     assert worst <= 1
-    said = f"{first}, {second} and {third} ended as `CONVERGED`, all with an error below the requested"
-    assert f"52 further scenes, against 768 elements: {said} accuracy (at most {worst:.2f} of it)" in PAGE_OF_BARS
+    converged = "{}, {} and {} ended as `CONVERGED`".format(*map(len, shares))
+    kept = f"all with an error below the requested accuracy (at most {worst:.2f} of it)"
+    assert f"52 further scenes, against 768 elements: {converged}, {kept} |" in PAGE_OF_BARS
     assert "met by every converged result of 52 further scenes" in README
 
 
