@@ -206,3 +206,22 @@ def test_the_gain_of_the_correction_is_that_of_the_study() -> None:
     assert judged in page
     assert at_worst in page
     assert f"{total['median_bar_over_error']:.1f} times the actual error, in the median" in text
+
+
+def test_how_often_identified_intervals_cover_is_of_the_studies() -> None:
+    """Counts on the page of tau and beta: cases of this version, tables of the earlier study, its finer grids."""
+    page = (ROOT / "docs/identify-tau-and-beta.md").read_text(encoding="utf-8")
+    names = ("tau", "beta", "mu")
+    cases = [c["data"] for c in committed("further")["cases"] if c["id"].startswith("identification/")]
+    fits = [(d["twins"] - d["refused"], d["coverage"]) for d in cases if "coverage" in d]
+    total = sum(count for count, _ in fits)
+    covered = [round(sum(count * share[name] for count, share in fits)) for name in names]
+    said = " | ".join(f"{count} of {total}" for count in covered)
+    assert f"this version: {total} tables (`identification/*`) | {said} |" in page
+    study = committed("identification")
+    sets = ("drawn", "sharp", "hardness", "roughness")
+    rows = [row for name in sets for row in study[name]["twins"] if not row.get("refused")]
+    finer = [row for row in study["drawn"]["twins"] if not row.get("refused") and row["grid"] > 64]
+    for start, some in ((f"version: {len(rows)} tables", rows), (f"these, {len(finer)} fits", finer)):
+        (line,) = (line for line in page.splitlines() if start in line)
+        assert line.endswith(" | ".join(str(sum(row[name] for row in some)) for name in names) + " |")
