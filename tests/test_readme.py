@@ -209,7 +209,7 @@ def test_the_gain_of_the_correction_is_that_of_the_study() -> None:
 
 
 def test_how_often_identified_intervals_cover_is_of_the_studies() -> None:
-    """Counts on the page of tau and beta: cases of this version, tables of the earlier study, its finer grids."""
+    """Counts on the page of tau and beta: this version, the earlier study, and its finer grids."""
     page = (ROOT / "docs/identify-tau-and-beta.md").read_text(encoding="utf-8")
     names = ("tau", "beta", "mu")
     cases = [c["data"] for c in committed("further")["cases"] if c["id"].startswith("identification/")]
