@@ -76,7 +76,11 @@ def _without_outliers(reading: RawHeights, times: float, repeats: bool) -> RawHe
 
 
 def outlying(z: Array, known: Mask, times: float, repeats: bool = False) -> tuple[Mask, float]:
-    """Return which ``known`` points are outliers, and the spread (m) over the map."""
+    """Return which ``known`` points are outliers, and the spread (m) over the map.
+
+    A spread is a robust rms of `off_neighbours`: over the map by the median, and over the 5 x 5 points around
+    by the 80th percentile. The larger one counts.
+    """
     away = off_neighbours(z, repeats)
     spread = max(MAD_TO_RMS * float(np.median(away[known])), _ROUNDING * float(z[known].std()))
     out = known & (away > times * spread)

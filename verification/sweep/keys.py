@@ -29,37 +29,40 @@ _BASE: Table = {"scene": "table1-rough", "vary": {"grid": [8]}, "solve": {}}
 _TEXTS: Mapping[str, tuple[str, str]] = {
     "scene": (
         "text",
-        "the base scene: a shipped one, or a file relative to the study's; the key is required",
+        "the scene that is varied: the name of a shipped one, or a file relative to that of the study",
     ),
     "realisations": (
         "whole number",
-        "number of realisations of random roughness at every point of the study",
+        "number of random surfaces (seeds) that are solved for each combination of values",
     ),
     "first_seed": (
         "whole number",
-        "realisation k, from 0, has the seeds `first_seed + 2 k` (upper) and `first_seed + 2 k + 1` (lower); "
-        "not set: 1; with a single realisation the scene's seeds",
+        "seed of the upper body in the first realisation; the lower body has the next number, and the next "
+        "realisation the next two. Not set: 1, or with a single realisation the seeds of the scene",
     ),
-    "normalise": ("true or false", "`normalise` of Gaussian parts; not set: as in the scene"),
-    "vary": ("table", "what varies: every combination of the values is a point of the study"),
-    "solve": ("table", "settings of the solver"),
+    "normalise": ("true or false", "`normalise` of all Gaussian surfaces; not set: as in the scene"),
+    "vary": ("table", "keys that vary, with their values; every combination is solved"),
+    "solve": ("table", "settings of the solver, the same for all runs"),
 }
 """Type and meaning of each key."""
 _AXES: Mapping[str, tuple[str, str]] = {
     "grid": ("", "elements along the longer side; not set: 256, or each map's own points, up to 512"),
     "upper_rms": ("m", "rms height of the upper body's roughness; 0 removes that roughness"),
     "lower_rms": ("m", "rms height of the lower body's roughness; 0 removes that roughness"),
-    "correlation_length": ("m", "that of all Gaussian parts"),
+    "correlation_length": ("m", "`correlation_length` of all Gaussian surfaces"),
     **{name: SCENE[name] for name in ("load", "sliding_direction", "sliding_offset")},
     **FRICTION,
 }
 _SETTINGS: Mapping[str, str] = {
-    "method": "production solver, plain reference for small grids, or the paper's scheme",
-    "oblique": "slope terms; not set: the scene decides",
-    "slope_correction": "exact tractions of oblique facets in Eq. (7)",
-    "tolerance": "tolerance of the certificate; not set: 1e-8, of the paper's scheme 1e-4",
-    "accuracy": "refine every run until the error bar is this share of `quantity`, in place of a grid",
-    "quantity": "number whose error bar `accuracy` limits; not set: `friction_coefficient_corrected`, "
+    "method": "`fft`: the solver of `solve`; `dense`: a plain reference for small grids; `paper`: the "
+    "scheme of the paper",
+    "oblique": "`true` includes the slopes in the balance of forces, `false` neglects them; not set: the "
+    "program decides by the scene",
+    "slope_correction": "`true` corrects the displacements in Eq. (7) for sloping elements",
+    "tolerance": "largest residual of a converged result; not set: 1e-8, with the method `paper` 1e-4",
+    "accuracy": "refines the grid of each run until the error bar of `quantity` is at most this share of it; "
+    "replaces `grid`",
+    "quantity": "number that `accuracy` means; not set: `friction_coefficient_corrected`, "
     "without friction `contact_area`",
 }
 
