@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from appendix_a.fem.coefficient_map import CoefficientMap, height_change
+from appendix_a.fem.coefficient_map import CoefficientMap, height_change, interpolation_error
 from appendix_a.fem.halfplane import pressed_strip
 from appendix_a.leading_order import coupling, first_order
 from tests.appendix_a.made_up import invented
@@ -22,6 +22,12 @@ def test_lookup_meets_the_nodes_and_mirrors():
     assert crest == pytest.approx(node - coupling(nu) * climb, abs=1e-12)
     downhill, uphill = table.departure(10.0, 32.0, 0.2, nu), table.departure(10.0, 32.0, 0.8, nu)
     assert uphill == pytest.approx(downhill[::-1], abs=1e-12)
+
+
+def test_the_stated_interpolation_error_is_small_and_grows_with_the_slope() -> None:
+    steep, gentle = interpolation_error(25.0), interpolation_error(6.5)
+    assert gentle < steep
+    assert steep[0] < steep[1] < 0.07
 
 
 TABLE_OFFSETS = np.array([-3.0, -0.5, 2.0, 4.0])

@@ -26,6 +26,14 @@ def test_coupling_displacement_by_polar_quadrature(place: tuple[float, float]) -
     assert float(STATE.coupling_displacement(x, y)) == pytest.approx(expected, rel=1e-12)
 
 
+def test_coupling_displacement_far_away_is_the_point_force() -> None:
+    x = 1e3 * HERTZ.contact_radius
+    assert float(STATE.coupling_displacement(x, 0)) == pytest.approx(
+        2e-13 * STATE.friction_force / x, rel=1e-14
+    )
+    assert float(STATE.coupling_displacement(-x, 0)) < 0 == float(STATE.coupling_displacement(0, x))
+
+
 def test_coupled_gap_leaves_hertz_in_contact() -> None:
     r = HERTZ.contact_radius * np.linspace(0, 0.99, 9)
     level = HERTZ.displacement(r) + STATE.coupling_displacement(r, 0) + STATE.gap(r, 0)
@@ -64,6 +72,14 @@ def test_patch_by_polar_quadrature(place: tuple[float, float]) -> None:
     x, y = place[0] * 1e-3, place[1] * 1e-3
     expected, _ = patch.displacement_by_quadrature(plate, x, y)
     assert float(plate.displacement(x, y)) == pytest.approx(expected, rel=patch.UNCERTAINTY)
+
+
+def test_patch_mean_by_gauss_rule() -> None:
+    plate = patch.Patch(1.0, 2.0, 1.0, 1.0)
+    nodes, weights = np.polynomial.legendre.leggauss(60)
+    u = plate.displacement(nodes[:, None], nodes[None, :] / 2)
+    # the displacement's edge has an x ln x: Gauss with n points leaves about n^-4
+    assert plate.mean_displacement == pytest.approx(float(weights @ u @ weights / 4), rel=1e-6)
 
 
 @pytest.mark.parametrize("frequency", [(1, 0), (-2, 1)])

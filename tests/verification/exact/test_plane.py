@@ -99,7 +99,7 @@ def cylinder(tau: float = 2e6, beta: float = 0.9) -> SlidingCylinder:
     return SlidingCylinder(1e5, 0.1, HARD_ON_SOFT[0], HARD_ON_SOFT[1], tau, beta)
 
 
-@pytest.mark.parametrize("place", [-0.97, 0.6])
+@pytest.mark.parametrize("place", [-0.97, 0.6, 0.97])
 def test_sliding_cylinder_satisfies_its_integral_equation(place: float) -> None:
     contact = cylinder()
     x = contact.centre + place * contact.half_width

@@ -129,6 +129,12 @@ def test_decay_knows_its_laws_apart(law: str) -> None:
         assert found.standard_errors < 0.01
 
 
+def test_decay_counts_in_standard_errors() -> None:
+    mu = 0.09 + 0.1 * LAWS["exponential"]
+    mu[4] += 5e-3  # 50 of them, of which the fit takes some up
+    assert 25 < decay_of(mu).standard_errors < 50
+
+
 def test_the_mean_slope_is_the_first_harmonic_and_nothing_else() -> None:
     angle = np.radians(np.arange(0, 360, 30))
     second = np.cos(2 * angle)
