@@ -64,22 +64,23 @@ def hertz_area() -> Measured:
 def classes() -> Measured:
     """mu by accuracy= on random scenes of every class, against 768 elements per side.
 
-    Claim: a converged mu is as near as requested
+    Claim: a converged mu is as near as requested, and 85 % of the requests converge
     Source: two scenes of each class of `verification.coverage.class_scenes`
-    Tolerance: share within the accuracy and the reference's bar; these are bars of 95 %
+    Tolerance: share within the accuracy, by bars of 95 %; the reference's own error is not allowed for
     """
     shares: dict[float, list[float]] = {request: [] for request in REQUESTS}
     for posed in (scene(kind, seed) for kind in CLASSES for seed in SEEDS):
-        finest = rf.solve(posed, 768)
-        mu = finest.friction_coefficient_corrected
+        mu = rf.solve(posed, 768).friction_coefficient_corrected
         for request in REQUESTS:
             found = rf.solve(posed, accuracy=request)
             if found.status is rf.Status.CONVERGED:
-                allowed = request * abs(mu) + error_bound(finest, "friction_coefficient_corrected")
-                shares[request].append(abs(found.friction_coefficient_corrected - mu) / allowed)
+                error = abs(found.friction_coefficient_corrected - mu)
+                shares[request].append(error / (request * abs(mu)))
+    kept = [share <= 1 for found in shares.values() for share in found]
+    enough = len(kept) >= 0.85 * len(CLASSES) * len(SEEDS) * len(REQUESTS)
     counts = [f"{len(found)} at {request} (worst {max(found):.2f})" for request, found in shares.items()]
     return Measured(
-        value=float(np.mean([share <= 1 for found in shares.values() for share in found])),
+        value=float(np.mean(kept)) if enough else 0.0,
         data={"error over accuracy": {str(request): found for request, found in shares.items()}},
         note=f"of {len(CLASSES) * len(SEEDS)} scenes converged {', '.join(counts)}",
     )
