@@ -63,7 +63,9 @@ def hertz(run: Mapping[str, Any]) -> str:
     """Show the smooth ball against Hertz' solution."""
     text = (
         "A smooth ball under 70 N without friction has the exact solution of Hertz. An order of convergence "
-        "states how fast errors fall on finer grids. Errors of orders are differences, all others relative."
+        "states how fast errors fall on finer grids. The last row is the excess of the maximum pressure by "
+        "slope terms, for a ball that is pressed deep. Its error and those of orders are differences, all "
+        "others relative."
     )
     return listing("Hertz contact", text, (c for c in run["cases"] if c["id"].startswith("hertz/")), HERTZ)
 

@@ -1,4 +1,4 @@
-"""`rough-friction solve --explain`: what a scene requires, printed without solving it.
+"""`rough-friction solve --explain`: what a scene requires, printed instead of solving it.
 
 With an accuracy the two grids that open a refinement are solved: by their bars the last grid is forecast.
 """

@@ -109,7 +109,10 @@ OPTIONS: Options = {
         metavar="on|off",
         type=on_or_off,
     ),
-    "--explain": option("print what the scene requires, without solving it", action="store_true"),
+    "--explain": option(
+        "print what the scene requires instead of solving it; with --accuracy small solves forecast the grid",
+        action="store_true",
+    ),
     "--tolerance": option("for the certificate (default 1e-8; paper 1e-4)", metavar="T", type=float),
     "--budget": option(
         "uncertainty budget and derivatives (under a load, a file with [tolerances] has it in any case)",
