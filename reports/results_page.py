@@ -21,7 +21,6 @@ from reports.result_tables.code import (
     codes,
     costs,
     coverage,
-    details_of_coverage,
     studies,
 )
 from reports.result_tables.paper import claims, confirmed, hertz, table_3
@@ -42,21 +41,22 @@ You want a number that was computed here, and the file behind it. Find your ques
   [time](#time).
 - Does μ agree with experiments? The friction of a rough pair is **not validated**: no experiment was found
   that states all inputs.
-- Are the numbers of the paper reproduced? {agree} of {printed} (two tables, two figures, section 8) agree
-  with ours within the uncertainty of the difference. On the fine mesh of [Table 3](#table-3-of-the-paper)
-  {fine} of {of_fine} agree.
+- Are the numbers of the paper reproduced? It prints {printed}, in two tables, two figures and section 8.
+  {agree} of these agree with ours within the uncertainty of the difference. On the fine mesh of
+  [Table 3](#table-3-of-the-paper) {fine} of {of_fine} agree.
 - Do the statements of the paper hold? {claims} See [claims](#claims-of-the-paper) and
   [errata](#errata-of-the-paper).
 - Does the code pass its own checks? Of {checks} [checks](#checks): {statuses}. The tolerance of a `recorded`
   check was set from its own result.
 - How do other codes fare? See [solvers in the suite](#solvers-in-the-suite-for-other-solvers).
 
-The paper is that of Karpenko and Akay (2001). Every row names its result file;
+The paper is that of Karpenko and Akay (2001). Every table names its result file;
 [results/README.md](results/README.md) has the command that made the file. `make report` makes the full
 report, with every case and figure. `python -m reports.results_page` writes this page from the files.
 
 Symbols: μ friction coefficient, A real contact area, p_max maximum contact pressure, σ_e equivalent rms
-roughness of both bodies. In quotes of the paper, p_max is f_max. ± is a 95 % interval."""
+roughness of both bodies, ψ plasticity index of Eq. (12), a half-width of a loaded element. In quotes of the
+paper, p_max is f_max. ± is a 95 % interval."""
 
 
 def page(documents: Mapping[str, Any]) -> str:
@@ -74,7 +74,6 @@ def page(documents: Mapping[str, Any]) -> str:
         codes(documents["cross_code"]),
         checks(documents, evidence),
         studies(documents),
-        details_of_coverage(documents),
     )
     return "\n\n".join(sections) + "\n"
 

@@ -21,12 +21,17 @@ def listing(title: str, text: str, records: Iterable[Any], columns: Mapping[str,
     return section(title, text, made.head, made.rows)
 
 
-def section(title: str, text: str, head: Sequence[str], rows: Sequence[Row]) -> str:
+def section(title: str, text: str, head: Sequence[str], rows: Iterable[Row]) -> str:
     """Return a heading, a paragraph, and a table."""
-    return "\n\n".join(filter(None, (f"## {title}", text, "\n".join(_table(head, rows)))))
+    return "\n\n".join((f"## {title}", text, markdown(head, rows)))
 
 
-def _table(head: Sequence[str], rows: Sequence[Row]) -> Iterator[str]:
+def markdown(head: Sequence[str], rows: Iterable[Row]) -> str:
+    """Return a table as Markdown."""
+    return "\n".join(_lines(head, rows))
+
+
+def _lines(head: Sequence[str], rows: Iterable[Row]) -> Iterator[str]:
     yield f"| {' | '.join(head)} |"
     yield "|" + "---|" * len(head)
     for row in rows:

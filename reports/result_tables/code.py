@@ -8,7 +8,7 @@ from typing import Any
 
 from reports.evidence import Evidence
 from reports.exhibit import Column
-from reports.result_tables import Row, link, listing, number, section
+from reports.result_tables import Row, link, listing, markdown, number, section
 from reports.results import FORMAT, RECORDED, STATUSES, Case, shown_status
 from reports.studies.benchmarks import newest_rows
 from reports.text import percent
@@ -21,49 +21,39 @@ JUDGED = {
     "max_pressure": "p_max",
 }
 COVERED = (MU, "contact_area_corrected", "contact_area", "max_pressure")
-DETAILS: dict[str, Column] = {
-    "class of scene": "class",
+SUMMARY: dict[str, Column] = {
     "number": lambda row: JUDGED[row["number"]],
-    "scenes": "scenes",
     "covered": lambda row: percent(row["held"]),
     "covered at worst": lambda row: percent(row["held_at_worst"]),
     "usable": lambda row: percent(row["usable"]),
     "error bar over error": lambda row: number(row["median_bar_over_error"], ".1f"),
-    "file": lambda row: link("coverage_corrected"),
 }
 
 
 def coverage(documents: Mapping[str, Any]) -> str:
-    """Show in which share of scenes the error bars of each number cover the reference, by class of scene."""
-    text = (
-        "Does an error bar of 95 % contain the right value? Each class has random scenes, drawn after the "
-        "constants of the error bars were fixed. Each scene is solved on a single grid of 48 to 128 elements "
-        "per side. The right value, the reference, is that on 384 elements. A cell is the share of scenes "
-        "whose error bar covers the reference. μ is the [corrected "
-        "mu](../docs/error-bars.md#corrected-mu-the-edge-bias-removed); A is summed over elements, or "
-        "perimeter-corrected. How long are the error bars, and how sure is the reference? See "
-        "[details](#details-of-coverage)."
-    )
+    """Show how many error bars cover the reference: of all scenes, then by class."""
     found = {(row["class"], row["number"]): row for row in documents["coverage_corrected"]["table"]}
-    rows: list[Row] = []
-    for name in dict.fromkeys(name for name, _ in found if name):
-        cells = (percent(found[name, number]["held"]) for number in COVERED)
-        rows.append((name, found[name, MU]["scenes"], *cells, link("coverage_corrected")))
-    head = ("class of scene", "scenes", *(JUDGED[number] for number in COVERED), "file")
-    return section("Coverage of error bars", text, head, rows)
-
-
-def details_of_coverage(documents: Mapping[str, Any]) -> str:
-    """Show coverage with the uncertainty of references and the length of error bars, by number and class."""
+    scenes = found[None, MU]["scenes"]
     text = (
-        "*Covered* is as [above](#coverage-of-error-bars). *Covered at worst* is that share if every "
-        "reference erred by the bound of its own error. *Usable* is the share of error bars that are at most "
-        "half of the number. *Error bar over error* divides the error bar by the error that was found; it is "
-        "the median of the class."
+        f"Does an error bar of 95 % contain the right value? {scenes} random scenes were drawn after the "
+        "constants of the error bars were fixed. Each is solved on one grid of 48 to 128 elements per side. "
+        f"The reference is its solution on 384 elements. File: {link('coverage_corrected')}.\n\n"
+        "- *Covered*: share of the error bars that contain the reference.\n"
+        "- *Covered at worst*: this share if every reference were wrong by its own error bound.\n"
+        "- *Usable*: share of the error bars that are at most half of their number.\n"
+        "- *Error bar over error*: median ratio of the error bar to the error that was found.\n\n"
+        "μ is the [corrected mu](../docs/error-bars.md#corrected-mu-the-edge-bias-removed). A is summed over "
+        "elements, or perimeter-corrected."
     )
-    table = [row for row in documents["coverage_corrected"]["table"] if row["class"]]
-    rows = [row for number in COVERED for row in table if row["number"] == number]
-    return listing("Details of coverage", text, rows, DETAILS)
+    by_class = "*Covered*, by class of scene:"
+    classes = [name for name, _ in found if name]
+    rows = [
+        (name, found[name, MU]["scenes"], *(percent(found[name, number]["held"]) for number in COVERED))
+        for name in dict.fromkeys(classes)
+    ]
+    head = ("class of scene", "scenes", *(JUDGED[number] for number in COVERED))
+    summary = listing("Coverage of error bars", text, [found[None, number] for number in COVERED], SUMMARY)
+    return "\n\n".join((summary, by_class, markdown(head, rows)))
 
 
 OWN = {
@@ -82,28 +72,22 @@ def costs(benchmarks: Mapping[str, Any]) -> str:
         found = {row["code"]: row for row in entries}
         cells = [number(_median(found.get(code))) for code in OWN.values()]
         cells += [number(_median(found.get(code, {}).get("ratio"))) for code in PEERS.values()]
-        rows.append((f"{kind} flat", f"{M}²", *cells, link("benchmarks")))
-    head = (
-        "surface",
-        "grid",
-        *(f"{label} (s)" for label in OWN),
-        *(f"ratio: {name}" for name in PEERS),
-        "file",
-    )
+        rows.append((f"{kind} flat", f"{M}²", *cells))
+    head = ("surface", "grid", *(f"{label} (s)" for label in OWN), *(f"ratio: {name}" for name in PEERS))
     text = (
         "How long does the contact of the paper's Table 1 take? Every code solves it until its relative "
-        "duality gap, recomputed here, is 1e-8. Four columns have seconds of this code. *Solver* is for the "
-        "pressures alone. *With error bars* goes from a scene to numbers with error bars. The next two add "
-        "friction, then slopes. A *ratio* is the time of another code over that of this code with error "
-        "bars. Numbers are medians of the newest run on the grid. Runs are of machines with "
-        f"{' and '.join(_machines(benchmarks['runs']))}; the report states their numbers of threads."
+        "duality gap, recomputed here, is 1e-8. It has one thread "
+        f"({', '.join(_processors(benchmarks['runs']))}). Numbers are medians. File: {link('benchmarks')}.\n\n"
+        "- *Solver*: seconds of this code for the pressures alone.\n"
+        "- *With error bars*: from a scene to numbers with error bars. The next two columns add friction, "
+        "then slopes.\n"
+        "- *Ratio*: time of another code, divided by that of this code with error bars. A dash: not run."
     )
     return section("Time", text, head, rows)
 
 
-def _machines(runs: Iterable[Mapping[str, Any]]) -> list[str]:
-    found = [run["provenance"]["machine"] for run in runs]
-    return sorted({f"{machine['cores']} cores ({machine['processor']})" for machine in found})
+def _processors(runs: Iterable[Mapping[str, Any]]) -> list[str]:
+    return sorted({run["provenance"]["machine"]["processor"] for run in runs})
 
 
 def _median(row: Mapping[str, Any] | None) -> float | None:
@@ -121,15 +105,16 @@ def accuracy_costs(costs: Mapping[str, Any]) -> str:
         for quantity in dict.fromkeys(quantity for quantity, _ in offers):
             label = labels[quantity]
             cells = (_cost(offers[quantity, demand], one["ladders"]) for demand in demands)
-            rows.append((one["class"], label, *cells, link("accuracy_costs")))
-    head = ("class of scenes", "number", *(f"{100 * demand:g} %" for demand in demands), "file")
+            rows.append((one["class"], label, *cells))
+    head = ("class of scenes", "number", *(f"{100 * demand:g} %" for demand in demands))
     text = (
-        "Which grid do you need for an accuracy? A cell names the coarsest grid whose relative error, and "
-        "those of all finer grids, are at most the percentage above; its seconds stand in brackets. Friction "
-        "and slopes are included. An error is that against a grid of 2048², with the error bar of this "
-        "reference added. A class of rough scenes has three realisations: the cell is their median if all of "
-        "them meet the accuracy. Otherwise it is *> 1024²*: some need a finer grid, or a reference of less "
-        "uncertainty. Its brackets state how many meet the accuracy, and the finest grid that these need."
+        "Which grid do you need for an accuracy? A cell has the coarsest grid whose relative error is at "
+        "most the percentage above, as are those of all finer grids. Its seconds follow in brackets. "
+        f"Friction and slopes are included. File: {link('accuracy_costs')}.\n\n"
+        "- *Error*: difference from a grid of 2048², plus the error bar of that grid.\n"
+        "- Each class has three scenes. The cell is their median if all three meet the accuracy.\n"
+        "- *> 1024² (2 of 3: 64²)*: two of three scenes meet it, on 64² at the finest. The third needs a "
+        "finer grid, or its reference is too uncertain."
     )
     return section("Cost and accuracy", text, head, rows)
 
@@ -142,10 +127,15 @@ def _cost(entry: Mapping[str, Any], realisations: Sequence[Sequence[Mapping[str,
     '> 1024² (1 of 2: 32²)'
     """
     if entry["M"] is not None:
-        return f"{entry['M']:.0f}² ({entry['seconds']:.2g})"
+        return f"{entry['M']:.0f}² ({_seconds(entry['seconds'])})"
     grids = [_coarsest(rows, entry["quantity"], entry["error"]) for rows in realisations]
     met = [grid for grid in grids if grid is not None]
     return f"> 1024² ({len(met)} of {len(grids)}: {max(met)}²)" if met else "> 1024²"
+
+
+def _seconds(seconds: float) -> str:
+    """Return seconds with two digits; below 0.05 s they vary by a factor of two from run to run."""
+    return "< 0.05 s" if seconds < 0.05 else f"{seconds:.2g} s"
 
 
 def _coarsest(rows: Sequence[Mapping[str, Any]], quantity: str, demand: float) -> int | None:
@@ -171,10 +161,11 @@ def checks(documents: Mapping[str, Any], evidence: Evidence) -> str:
     counted = zip(_counts(evidence.cases), COUNTED, strict=True)
     listed = ", ".join(f"{count} {status}" for count, status in counted)
     bad = [f"`{case['id']}` ({case['status']})" for case in evidence.cases if case["status"] != "pass"]
-    text = f"{len(evidence.cases)} different checks: {listed}. Not passed: {', '.join(bad) or 'none'}."
-    text += (
-        " The tolerance of a *recorded* check was set from its own result, so it detects changes only. "
-        "Names of checks have `*` for any letters. *Date* and *commit* are those of the run."
+    text = (
+        f"{len(evidence.cases)} different checks: {listed}. Not passed: {', '.join(bad) or 'none'}. The "
+        "tolerance of a *recorded* check was set from its own result, so it detects changes only.\n\n"
+        "A row has the checks of one file. Some quick checks stand in a second file too, so the rows sum to "
+        "more than all checks. In names, `*` stands for any letters."
     )
     return section("Checks", text, ("file", "checks", *COUNTED, "date", "commit"), rows)
 
@@ -199,9 +190,9 @@ def studies(documents: Mapping[str, Any]) -> str:
         ("random examples of invariants", tried, link("hypothesis")),
     ]
     text = (
-        "Two searches for wrong results. Contacts of extreme inputs were judged by an independent "
-        "computation; a detected failure is a result whose status says not to use it. Random contacts were "
-        "tried on rules that every solution keeps, the invariants."
+        "Were wrong results found? Two studies searched for them. The first has contacts of extreme inputs, "
+        "judged by an independent computation. A *detected failure* is a result whose status says: do not "
+        "use it. The second tries random contacts on rules that every solution obeys, the invariants."
     )
     return section("Studies", text, ("study", "result", "file"), rows)
 
@@ -213,11 +204,11 @@ def codes(cross_code: Mapping[str, Any]) -> str:
         "solver": "name",
         "role": lambda entrant: roles[entrant["role"]],
         **{status: f"{{counts[{status}]}}" for status in STATUSES},
-        "file": lambda entrant: link("cross_code"),
     }
     text = (
         "Which codes pass the [suite](../docs/check-your-solver.md)? The table counts the cases by verdict. "
-        "*Unavailable* cases are outside the abilities of the solver. A negative control is set up wrongly "
-        "on purpose, to test that the suite detects it."
+        f"File: {link('cross_code')}.\n\n"
+        "- *Unavailable*: the solver does not solve such a case.\n"
+        "- *Negative control*: a solver that is set up wrongly on purpose, which the suite must detect."
     )
     return listing("Solvers in the suite for other solvers", text, cross_code["entrants"], columns)
