@@ -77,7 +77,8 @@ def costs(benchmarks: Mapping[str, Any]) -> str:
     text = (
         "How long does the contact of the paper's Table 1 take? Every code solves it until its relative "
         "duality gap, recomputed here, is 1e-8. It has one thread "
-        f"({', '.join(_processors(benchmarks['runs']))}). Numbers are medians. File: {link('benchmarks')}.\n\n"
+        f"({', '.join(_processors(benchmarks['runs']))}). Numbers are medians. "
+        f"File: {link('benchmarks')}.\n\n"
         "- *Solver*: seconds of this code for the pressures alone.\n"
         "- *With error bars*: from a scene to numbers with error bars. The next two columns add friction, "
         "then slopes.\n"
