@@ -133,6 +133,15 @@ def test_a_requested_accuracy_is_met_as_is_said() -> None:
     assert "met by every converged result of 52 further scenes" in README
 
 
+def test_the_bars_of_the_default_grid_cover_as_is_said() -> None:
+    (found,) = (one for one in committed("further")["cases"] if one["id"] == "accuracy/one-grid")
+    mu, area = (found["data"]["covered"][name] for name in (MU, "contact_area_corrected"))
+    scenes = found["data"]["scenes"]
+    said = f"{scenes} further scenes, against 768 elements: {mu} bars of mu and {area} of A cover |"
+    assert f"| mu and A on the default grid, 256 elements | {said}" in PAGE_OF_BARS
+    assert f"(against 768)? | in {mu} of {scenes} further scenes |" in README
+
+
 def test_the_coverage_of_the_corrected_area_is_that_of_the_study() -> None:
     """All classes together, and the three with the least."""
     table = committed("coverage_corrected")["table"]
