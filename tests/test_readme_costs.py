@@ -46,7 +46,7 @@ def test_what_is_said_first_is_so() -> None:
     readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
     smooth, rough = at_512(partial(seconds, SLOPED))
     flats = f"{smooth:.2f} s on a smooth flat, {rough:.2f} s on a rough one"
-    assert f"{flats}, friction, slopes and error bars included, on one thread (November 2026;" in readme
+    assert f"{flats}, friction, slopes and error bars included, one thread ([costs]" in readme
     whole = "this code with friction and slope terms, from a scene to numbers with error bars"
     ours = {whole: SLOPED, "the same without slope terms": SHEARED, "the same without friction": OWN}
     for label, code in ours.items():
