@@ -39,8 +39,8 @@ def _lines(head: Sequence[str], rows: Iterable[Row]) -> Iterator[str]:
 
 
 def number(value: float | None, digits: str = ".2g") -> str:
-    """Return a number in a table; a dash where there is none."""
-    return "-" if value is None else format(value, digits)
+    """Return a number in a table, without an exponent; a dash where there is none."""
+    return "-" if value is None else f"{float(format(value, digits)):g}"
 
 
 def link(name: str) -> str:
