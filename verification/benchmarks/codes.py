@@ -72,10 +72,8 @@ def _published(code: PublishedCode, kind: str, M: int, tolerance: float) -> Call
     return press
 
 
-def own(
-    friction: rf.Friction, oblique: bool, kind: str, M: int, tolerance: float, *, bars: bool = True
-) -> Callable[[], Pressed]:
-    """Return our solve of a kind of contact, from a scene to a solution, on request with its error bars."""
+def own(friction: rf.Friction, oblique: bool, kind: str, M: int, tolerance: float) -> Callable[[], Pressed]:
+    """Return our solve of a kind of contact, from a scene to a solution with its error bars."""
     posed = scene(kind, M, friction)
 
     def press() -> Pressed:
@@ -83,7 +81,7 @@ def own(
         work = {f"{name} products": float(n) for name, n in found.cost.applications.items()}
         coupled = None if is_frictionless(friction) and not oblique else found.certificate.largest
         work["n log2 n"] = found.cost.point_logs
-        _ = bars and (found.uncertainty, found.warnings)  # computed when read
+        _ = found.uncertainty, found.warnings  # computed when read
         return Pressed(found.pressure, found.converged, work, coupled)
 
     return press

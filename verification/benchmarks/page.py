@@ -1,7 +1,7 @@
 """The table of docs/costs.md, from the record of runs: ``python -m verification.benchmarks --page``.
 
 The newest run on one thread counts in which ours and ASPHER took part with all their set-ups. A cell is the
-range over the rounds, or the ratio of medians where a run recorded no other.
+range over the rounds, of memory the ratio of medians.
 """
 
 from __future__ import annotations
@@ -19,23 +19,15 @@ Ratios = Mapping[str, Any]
 Rows = Mapping[str, Any]
 Spread = Mapping[str, float]
 """Median, and where it is known the least and the most."""
-Number = Callable[[Ratios, Rows], Spread | None]
+Number = Callable[[Ratios, Rows], Spread]
 
 
 def over(code: str, by: str = OWN) -> Number:
-    """Return a code's seconds over this code's, or its solver's: a range of rounds or, if old, of medians."""
-
-    def number(ratios: Ratios, rows: Rows) -> Spread | None:
-        if by == OWN:
-            return dict(ratios[code]["seconds"])
-        if by in ratios[code]:
-            return dict(ratios[code][by]["seconds"])
-        return {"median": rows[code]["seconds"]["median"] / rows[by]["seconds"]["median"]}
-
-    return number
+    """Return a code's seconds over this code's, or its solver's: the range of the rounds."""
+    return lambda ratios, rows: dict((ratios[code] if by == OWN else ratios[code][by])["seconds"])
 
 
-def memory(ratios: Ratios, rows: Rows) -> Spread | None:
+def memory(ratios: Ratios, rows: Rows) -> Spread:
     """Return ASPHER's memory of a solve, as a ratio to this code."""
     theirs, ours = (rows[code]["memory of the solve"]["median"] for code in (PEER, OWN))
     return {"median": theirs / ours}

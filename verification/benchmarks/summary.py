@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 import statistics
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from verification.benchmarks.codes import ALONE, OWN
 from verification.benchmarks.rounds import TARGET, Found, Turns, error
 
-AGAIN = "seconds again"  # key of a second solve in the same process
-CLOCKS = ("seconds", "processor seconds", AGAIN)
-TIMED = (*CLOCKS, "peak memory")
+TIMED = ("seconds", "processor seconds", "seconds again", "peak memory")  # again: in the same process
 JUDGED = ("gap", "balance", "penetration", "tension", "area", "peak", "converged", "operations", "padded box")
 
 
@@ -48,47 +46,23 @@ def row(turns: Turns) -> dict[str, object]:
 
 
 def ratios(turns: Sequence[Turns]) -> dict[str, object]:
-    """Return each code's seconds over this code's on a problem, by rounds; and the least of the peers'.
+    """Return each code's seconds over this code's on a problem, by rounds; under `ALONE` over its solver's.
 
-    The least by the recommended set-ups, by any, over the solver alone, and over it in a process that has
-    solved the same before. Processor seconds beside: they hear less of what else the machine does. Under
-    `ALONE` the same over the solver alone.
+    Processor seconds beside: they hear less of what else the machine does.
     """
     by_code = {one.code: one.rounds for one in turns if one.rounds}
     own, alone = by_code.pop(OWN, None), by_code.get(ALONE, [])
     if own is None:
         return {}
-    found: dict[str, object] = {
+    return {
         code: {clock: _over(rounds, own, clock) for clock in ("seconds", "processor seconds")}
-        | {ALONE: {clock: _over(rounds, alone, clock) for clock in CLOCKS if _timed(clock, rounds, alone)}}
+        | ({ALONE: {"seconds": _over(rounds, alone, "seconds")}} if alone else {})
         for code, rounds in by_code.items()
     }
-    peers = {code: rounds for code, rounds in by_code.items() if not code.startswith(OWN)}
-    recommended = {code: rounds for code, rounds in peers.items() if "+" not in code}
-    found |= _fastest("fastest peer", recommended, own, "seconds")
-    found |= _fastest("fastest set-up of a peer", peers, own, "seconds")
-    found |= _fastest("fastest peer, solver alone", recommended, alone, "seconds")
-    found |= _fastest("fastest peer, solver alone, again", recommended, alone, AGAIN)
-    return found
 
 
 def _over(theirs: Sequence[Found], ours: Sequence[Found], clock: str) -> dict[str, float]:
     return spread(one[clock] / other[clock] for one, other in zip(theirs, ours, strict=False))
-
-
-def _timed(clock: str, theirs: Sequence[Found], ours: Sequence[Found]) -> bool:
-    return bool(ours) and all(one[clock] is not None for one in (*theirs, *ours))
-
-
-def _fastest(
-    name: str, peers: Mapping[str, Sequence[Found]], ours: Sequence[Found], clock: str
-) -> dict[str, object]:
-    timed = {code: rounds for code, rounds in peers.items() if _timed(clock, rounds, ours)}
-    if not timed:
-        return {}
-    medians = {code: _over(rounds, ours, clock)["median"] for code, rounds in timed.items()}
-    fastest = min(medians, key=lambda code: medians[code])
-    return {name: {"code": fastest, "seconds over ours": medians[fastest]}}
 
 
 def lines(rows: Sequence[Any], ratios: Sequence[Any]) -> list[list[str]]:

@@ -27,9 +27,7 @@ class _Draw(Dice):
         self.seed = int(self.rng.integers(2**31))
         self.periodic, ratio = bool(self.rng.integers(2)), self.rng.choice([1.0, self.log(1.0, 3.0)])
         self.size = (SIDE, SIDE / ratio) if self.rng.integers(2) else (SIDE / ratio, SIDE)
-        self.lower, self.upper = (
-            rf.Material(E=self.log(2e9, 400e9), nu=float(self.rng.uniform(0.1, 0.49))) for _ in range(2)
-        )
+        self.lower, self.upper = self.material(), self.material()
         self.modulus = Pair(lower=self.lower, upper=self.upper).reduced_modulus
         self.direction = self.angle()
         self.ball = not self.periodic  # presses the surface, instead of a flat

@@ -24,6 +24,10 @@ class Dice:
         """Return a log-uniform number."""
         return math.exp(self.rng.uniform(math.log(low), math.log(high)))
 
+    def material(self) -> rf.Material:
+        """Return one of 2 to 400 GPa."""
+        return rf.Material(E=self.log(2e9, 400e9), nu=float(self.rng.uniform(0.1, 0.49)))
+
     def angle(self) -> float:
         """Return an angle of the whole circle (rad)."""
         return float(self.rng.uniform(0, 2 * math.pi))

@@ -93,7 +93,6 @@ def fitted(tables: TableSet, seed: int) -> dict[str, object]:
         "named": table.wrong in found.outliers,
         "named_wrongly": len(set(found.outliers) - {table.wrong}),
         "dropped": None if found.fitted.dropped is None else found.fitted.dropped == table.wrong,
-        "measurement_share": found.shares["measurement"][0] / math.sqrt(found.covariance[0, 0]),
         "warned": any("not determined apart" in text for text in found.warnings),
     }
     if tables.realisations == 1:
@@ -134,8 +133,7 @@ def summary(tables: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
 
     The warning follows from the width of tau's interval. ``unwarned_tau_error``, the largest error of tau
     among tables without a warning, is independent of it. ``bias`` is tau's mean error in standard
-    uncertainties, ``bias_without_noise`` that without the rows' noise; ``covered_by_model`` the share of
-    tables with noise alone whose tau, without it, is within the model's part of the interval.
+    uncertainties, ``bias_without_noise`` that without the rows' noise.
     """
     rows = list(tables)
     solved = [row for row in rows if "tau" in row]
@@ -153,8 +151,6 @@ def summary(tables: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     widths = [(math.inf if width is None else width, warned) for width, warned in half_widths]
     unwarned = [abs(row["tau_error"]) for row in solved if not row["warned"]]
     without = [row["tau_without_noise"] for row in solved if "tau_without_noise" in row]
-    noisy = [row for row in solved if row["error"] == "noise" and "tau_without_noise" in row]
-    by_model = [abs(row["tau_without_noise"]) / math.sqrt(1 - row["measurement_share"] ** 2) for row in noisy]
     wrong = [row for row in solved if row["error"] in ("outlier", "unit slip")]
     return {
         "twins": len(rows),
@@ -166,7 +162,6 @@ def summary(tables: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
         "by_error": by("error"),
         "bias": float(np.mean([row["tau_deviation"] for row in solved])),
         "bias_without_noise": float(np.mean(without)) if without else None,
-        "covered_by_model": sum(error <= COVERAGE for error in by_model) / max(len(by_model), 1),
         "with_wrong_row": len(wrong),
         "wrong_row_named": sum(row["named"] for row in wrong),
         "rows_named_wrongly": sum(row["named_wrongly"] for row in solved),

@@ -37,12 +37,9 @@ class _Dice(Dice):
     def __init__(self, seed: int) -> None:
         super().__init__(2001, seed)
         self.seeds = 2 * seed, 2 * seed + 1  # seeds of both bodies' roughness
-        lower, upper = self._material(), self._material()
+        lower, upper = self.material(), self.material()
         self.pair = Pair(lower=lower, upper=lower if self.rng.random() < 0.2 else upper)
         self.modulus = self.pair.reduced_modulus
-
-    def _material(self) -> rf.Material:
-        return rf.Material(E=self.log(2e9, 400e9), nu=float(self.rng.uniform(0.1, 0.49)))
 
     def friction(self, mean_pressure: float) -> rf.Friction:
         """Draw neither, one or both of tau and beta; tau up to a third of the mean pressure."""

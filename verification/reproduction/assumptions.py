@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 import refimpl as rf
-from refimpl.model.forces import Forces, facet_resultants, resultants
+from refimpl.model.forces import facet_resultants, resultants
 from verification.reproduction.table1 import rough
 from verification.reproduction.tangential import displacements, with_tangential
 
@@ -27,8 +27,7 @@ def sheared_scene(beta: float) -> rf.Scene:
     return rf.Scene(*bodies, rf.Friction(beta=beta), load=0.01, side=4e-4)
 
 
-@dataclass(frozen=True)
-class TangentialEffect:
+class TangentialEffect(NamedTuple):
     """Effect of tangential displacements: largest displacement and rms change of the gap on the contact over
     the approach, and relative changes of mu, A and f_max when they are put into the surfaces.
     """
@@ -38,11 +37,6 @@ class TangentialEffect:
     friction: float
     area: float
     peak: float
-
-    @property
-    def largest(self) -> float:
-        """The largest relative change of mu and A."""
-        return max(abs(self.friction), abs(self.area))
 
 
 def tangential_effect(flat_rms: float, ball_rms: float, realisation: int, grid: int) -> TangentialEffect:
@@ -61,28 +55,17 @@ def tangential_effect(flat_rms: float, ball_rms: float, realisation: int, grid: 
     )
 
 
-@dataclass(frozen=True)
-class FacetEffect:
-    """Printed cosines against facet tractions: rms slope on the contact, relative changes of N and F."""
+def facet_effect(flat_rms: float, grid: int) -> tuple[float, float, float, float]:
+    """Return the rms slope on the contact, and what exact facet tractions change N, F and F / N by, relative.
 
-    slope: float
-    normal: float
-    friction: float
-
-    @property
-    def coefficient(self) -> float:
-        """Relative change of F / N."""
-        return (1 + self.friction) / (1 + self.normal) - 1
-
-
-def facet_effect(flat_rms: float, grid: int) -> FacetEffect:
-    """Return the pressures and slopes summed both ways, for one realisation at P = 70 N."""
+    The pressures and slopes of one realisation at P = 70 N are summed both ways.
+    """
     found = rf.solve(rough(flat_rms), grid)
-    sums: list[Forces] = [
+    printed, exact = (
         how(found.pressure, found.traction, found.slopes, found.grid.element_area)
         for how in (resultants, facet_resultants)
-    ]
-    printed, exact = sums
+    )
     contact = found.contact
     slope = np.sqrt(np.mean(found.slopes.tan_x[contact] ** 2 + found.slopes.tan_y[contact] ** 2) / 2)
-    return FacetEffect(float(slope), exact.normal / printed.normal - 1, exact.friction / printed.friction - 1)
+    normal, friction = exact.normal / printed.normal - 1, exact.friction / printed.friction - 1
+    return float(slope), normal, friction, (1 + friction) / (1 + normal) - 1

@@ -112,12 +112,8 @@ def fig12() -> Measured:
     Tolerance: the paper's own bound
     """
     x = np.linspace(-15.0, 15.0, 61)
-    data: dict[str, object] = {"x over a": x, "flat": field.flat_displacement(x, 0.3)}
-    for slope in (15.0, 6.5):
-        by_paper, flat = printed(slope, 100.0, 0.3, offsets=x)
-        expanded, _ = first_order(slope, 100.0, 0.0, 0.3, offsets=x)
-        data[f"{slope:g} degrees, superposition"] = by_paper
-        data[f"{slope:g} degrees, first order"] = expanded
+    by_paper, flat = printed(6.5, 100.0, 0.3, offsets=x)
+    expanded, _ = first_order(6.5, 100.0, 0.0, 0.3, offsets=x)
     change = np.maximum(np.abs(by_paper - flat), np.abs(expanded - flat))
     away = np.abs(x) >= 1
     value = float(np.max(change[away] / np.abs(field.flat_displacement(x[away], 0.3))))
@@ -125,7 +121,7 @@ def fig12() -> Measured:
         f"on the crest, where the paper puts its strip, {value:.2%} at 6.5 degrees beyond a; on a flank the "
         "change is larger and does not fall (flank-first-order)"
     )
-    return judged(Verdict.CONDITIONAL, sentence, value, data=data)
+    return judged(Verdict.CONDITIONAL, sentence, value, data={})
 
 
 @case("appendix-strip/flank-first-order", metric="at_least", tolerance=0.02, source=SOURCE)
@@ -138,5 +134,4 @@ def flank() -> Measured:
     """
     offsets = np.array([-6.0, -4.0, -2.0, 2.0, 4.0, 6.0])
     wavy, flat = first_order(6.5, 100.0, 0.25, 0.3, offsets=offsets)
-    relative = (wavy - flat) / flat
-    return Measured(float(np.max(np.abs(relative))), data={"relative change": relative})
+    return Measured(float(np.max(np.abs((wavy - flat) / flat))))

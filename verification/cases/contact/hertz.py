@@ -20,8 +20,6 @@ RADIUS = 0.14
 EXACT = Sphere(load=SCENE.load, radius=RADIUS, modulus=SCENE.materials.reduced_modulus)
 GRIDS = (32, 64, 128, 256, 512)
 FINE = 256
-COARSENED = 4
-"""Every fourth element is enough for a map in a report."""
 
 
 @cache
@@ -57,8 +55,6 @@ def peak_pressure() -> Measured:
     solution, r = solved(FINE), distance(FINE)
     middle = FINE // 2
     data = {
-        "pressure": solution.pressure[::COARSENED, ::COARSENED] / 1e6,
-        "side": SCENE.lengths[0] * 1e3,
         "x": (np.arange(FINE) + 0.5 - middle) * solution.grid.spacings[0] * 1e3,
         "computed": solution.pressure[:, middle] / 1e6,
         "hertz": EXACT.pressure(r[:, middle]) / 1e6,
@@ -86,7 +82,7 @@ def peak_pressure() -> Measured:
     },
     metric="absolute", source=SOURCE,
 )  # fmt: skip
-def order(number: str, exact: float, name: str) -> Measured:
+def order(number: str, exact: float) -> Measured:
     """Order of the {name} over 32 ... 512.
 
     Claim: the error of the {name} falls with the square of the element
@@ -96,7 +92,6 @@ def order(number: str, exact: float, name: str) -> Measured:
     return Measured(
         value=found.order,
         reference=2.0,
-        data={"spacing": spacings(), name: errors},
         note=f"local orders {', '.join(f'{p:.2f}' for p in found.local)}",
     )
 
@@ -128,8 +123,7 @@ def profile() -> Measured:
         off = np.abs(solved(M).pressure - EXACT.pressure(r))[r < 0.8 * EXACT.contact_radius]
         errors.append(float(off.max()) / EXACT.peak_pressure)
     fitted = fit_order(spacings(), errors).order
-    data = {"spacing": spacings(), "profile": errors}
-    return Measured(value=errors[GRIDS.index(FINE)], data=data, note=f"order {fitted:.2f} over 32 ... 512")
+    return Measured(value=errors[GRIDS.index(FINE)], note=f"order {fitted:.2f} over 32 ... 512")
 
 
 @cache
@@ -150,16 +144,6 @@ def mean_radii(M: int, shifts: int) -> tuple[float, float]:
     return math.sqrt(raw / count / math.pi), math.sqrt(corrected / count / math.pi)
 
 
-def _radius_data() -> dict[str, object]:
-    rows = [(M, *mean_radii(M, shifts)) for M, shifts in ((64, 8), (128, 8), (256, 8), (512, 4))]
-    a = EXACT.contact_radius
-    return {
-        "spacing": [SCENE.lengths[0] / M for M, _, _ in rows],
-        "raw": [abs(raw / a - 1) for _, raw, _ in rows],
-        "corrected": [abs(corrected / a - 1) for _, _, corrected in rows],
-    }
-
-
 def _radius_note(shifts: int, M: int) -> str:
     raw, corrected = (r / EXACT.contact_radius - 1 for r in mean_radii(M, shifts))
     return f"{shifts**2} shifts at {M}: raw {raw:+.2e}, perimeter-corrected {corrected:+.2e}"
@@ -176,9 +160,7 @@ def radius_corrected() -> Measured:
     third more, so 5e-4 too small as measured, 2.5e-4 on half the element
     """
     note = f"{_radius_note(8, 256)}; {_radius_note(4, 512)}"
-    return Measured(
-        value=mean_radii(256, 8)[1], reference=EXACT.contact_radius, unit="m", data=_radius_data(), note=note
-    )
+    return Measured(value=mean_radii(256, 8)[1], reference=EXACT.contact_radius, unit="m", note=note)
 
 
 @case("hertz/radius-raw", metric="relative", tolerance=1e-3, source=SOURCE)

@@ -12,8 +12,9 @@ import refimpl as rf
 from refimpl.model.materials import Pair
 from refimpl.solution.quantities import error_bound
 from verification.cases import Measured, case, certified
+from verification.coverage.drawing import SIDE, Dice
 
-SIDE, SOFT = 1e-3, 1e9  # m; Pa, the more compliant body's modulus
+SOFT = 1e9  # Pa, the more compliant body's modulus
 FINER = 4  # times the elements per side of the reference
 ORDER = {"approach": 1.5, "normal_force": 1.0, "max_pressure": 1.0}  # errors fall by these powers at least
 SCENES = 100  # scenes of each kind
@@ -45,18 +46,14 @@ def off(scene: rf.Scene, M: int, approach: float | None = None) -> dict[str, flo
     return shares
 
 
-class _Dice:
+class _Dice(Dice):
     """A random scene's numbers: a soft body with a harder one, tau up to 0.8 of the mean pressure."""
 
     def __init__(self, seed: int) -> None:
-        self.rng = np.random.default_rng([2004, seed])
+        super().__init__(2004, seed)
         soft = rf.Material(SOFT, self.rng.uniform(0, 0.45))
         hard = rf.Material(SOFT * self.log(1.5, 1e4), self.rng.uniform(0.1, 0.4))
         self.lower, self.upper = (soft, hard) if self.rng.random() < 0.5 else (hard, soft)
-
-    def log(self, low: float, high: float) -> float:
-        """Return a log-uniform number."""
-        return math.exp(self.rng.uniform(math.log(low), math.log(high)))
 
     def friction(self, pressure: float) -> rf.Friction:
         """Draw a friction law: tau, and in half of the scenes beta as well."""
@@ -88,8 +85,7 @@ def _on_a_plane(seed: int) -> rf.Scene:
 
 
 def _sliding(scene: rf.Scene, dice: _Dice, pressure: float) -> rf.Scene:
-    direction = float(dice.rng.uniform(0, 2 * math.pi))
-    return replace(scene, friction=dice.friction(pressure), sliding_direction=direction)
+    return replace(scene, sliding_direction=dice.angle(), friction=dice.friction(pressure))
 
 
 def random_shares() -> Iterator[tuple[str, float]]:

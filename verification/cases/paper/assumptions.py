@@ -56,17 +56,14 @@ def tangential(tier: str) -> Measured:
     """
     grid = min(GRID[tier], 256)
     found = {flat: assumptions.tangential_effect(flat, BALL, 0, grid) for flat in FLATS}
-    worst = max(effect.largest for effect in found.values())
+    worst = max(abs(change) for e in found.values() for change in (e.friction, e.area))
     sentence = "; ".join(
         f"at {flat * 1e6:g} um: displacement {e.displacement:.2f} of the approach, gap {e.gap:.2%} of "
         f"it, mu {e.friction:+.3%}, A {e.area:+.2%}, f_max {e.peak:+.2%}"
         for flat, e in found.items()
     )
-    data = {
-        "change of mu": [e.friction for e in found.values()],
-        "change of A": [e.area for e in found.values()],
-        "change of f_max": [e.peak for e in found.values()],
-    }
+    *_, mu, area, peak = zip(*found.values(), strict=True)
+    data = {"change of mu": mu, "change of A": area, "change of f_max": peak}
     return judged(Verdict.CONFIRMED, sentence, worst, data=data)
 
 
@@ -129,19 +126,13 @@ def facets() -> Measured:
     """
     flats = (0.504e-6, 1.680e-6, 6.720e-6, 26.88e-6)
     effects = [assumptions.facet_effect(flat, 128) for flat in flats]
-    slope = np.array([e.slope for e in effects])
-    normal = np.array([e.normal for e in effects])
+    slope, normal, _, mu = np.array(effects).T
     order = float(np.polyfit(np.log(slope), np.log(np.abs(normal)), 1)[0])
     sentence = "; ".join(
-        f"rms slope {e.slope:.4f}: N {e.normal:+.1e}, F {e.friction:+.1e}, mu {e.coefficient:+.1e}"
-        for e in effects
+        f"rms slope {at:.4f}: N {of_N:+.1e}, F {of_F:+.1e}, mu {of_mu:+.1e}"
+        for at, of_N, of_F, of_mu in effects
     )
-    data = {
-        "rms slope": slope,
-        "change of N": normal,
-        "change of F": [e.friction for e in effects],
-        "change of mu": [e.coefficient for e in effects],
-    }
+    data = {"rms slope": slope, "change of N": normal, "change of mu": mu}
     return judged(Verdict.CONFIRMED, f"order {order:.2f} in N; {sentence}", order, reference=2.0, data=data)
 
 

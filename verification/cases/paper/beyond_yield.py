@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from verification.cases import Measured, Verdict, judged, percents
-from verification.reproduction.beyond_yield import LOWEST, MODELS, Point, cells, crossing, points
-from verification.reproduction.printed import HARDNESS, LOADS, TABLE3
+from verification.reproduction.beyond_yield import LOWEST, Point, cells, crossing, points
+from verification.reproduction.printed import HARDNESS, LOADS
 from verification.reproduction.tiers import in_both_tiers
 
 SOURCE = "paper section 8, Eq. (11); pressures that end at the hardness"
@@ -15,36 +15,6 @@ LOADS_IN_WORDS = ", ".join(f"{load:g}" for load in LOADS) + " N"
 
 def _by_load(tier: str) -> dict[float, list[Point]]:
     return {load: [p for p in points(tier) if p.load == load] for load in LOADS}
-
-
-def _series(tier: str) -> dict[str, object]:
-    """Return the figure's series: means and 95 % half widths over realisations, by load and model."""
-    curves = _by_load(tier)
-    first = curves[LOADS[0]]
-    data: dict[str, object] = {
-        "sigma_e (um)": [p.rms * 1e6 for p in first],
-        "psi": [p.psi for p in first],
-        "Eq. (11)": LOWEST,
-        "realisations": len(first[0].found["capped"]),
-    }
-    for load, curve in curves.items():
-        for model in MODELS:
-            at = f"{model}, {load:g} N"
-            mu, area = ([p.mean(model, name) for p in curve] for name in ("friction", "area"))
-            data |= {f"mu, {at}": [e.mean for e in mu], f"mu half width, {at}": [e.half_width for e in mu]}
-            data |= {f"A (mm^2), {at}": [e.mean * 1e6 for e in area]}
-            data |= {f"A half width (mm^2), {at}": [e.half_width * 1e6 for e in area]}
-            pressure = [p.mean(model, "mean_pressure").mean / HARDNESS for p in curve]
-            data |= {f"mean pressure / H, {at}": pressure}
-        shares = [p.mean("capped", "plastic_share").mean for p in curve]
-        data[f"plastic share, {load:g} N"] = shares
-    return data
-
-
-def _over(tier: str, name: str, by_load: dict[float, list[float]]) -> dict[str, object]:
-    first = _by_load(tier)[LOADS[0]]
-    data: dict[str, object] = {"sigma_e (um)": [p.rms * 1e6 for p in first], "psi": [p.psi for p in first]}
-    return data | {f"{name}, {load:g} N": values for load, values in by_load.items()}
 
 
 def _above_lowest(point: Point) -> float:
@@ -72,7 +42,7 @@ def lower_bound(tier: str) -> Measured:
         f"{percents(nearest)}, the mean pressure is {percents(pressure, 0)} of H and {percents(share, 0)} of "
         "the contact is plastic"
     )
-    return judged(Verdict.CONFIRMED, sentence, least, data=_series(tier))
+    return judged(Verdict.CONFIRMED, sentence, least, data={})
 
 
 @in_both_tiers("reproduction/eq11-capped-estimate", metric="at_most", tolerance=0.15, source=SOURCE)
@@ -96,7 +66,8 @@ def estimate(tier: str) -> Measured:
         f"at psi = 1 mu is above Eq. (11) by {percents(at_one)} ({LOADS_IN_WORDS}); {'; '.join(reached)}. It "
         "is the limit of rough surfaces, not the value at the threshold"
     )
-    data = _over(tier, "mu / Eq. (11) - 1", errors)
+    data: dict[str, object] = {"psi": [p.psi for p in curves[LOADS[0]]]}
+    data |= {f"mu / Eq. (11) - 1, {load:g} N": by_psi for load, by_psi in errors.items()}
     return judged(Verdict.CONDITIONAL, sentence, max(beyond), data=data)
 
 
@@ -115,16 +86,14 @@ def slopes(tier: str) -> Measured:
     depth = min(float(p.above_lowest.min()) for p in found)
     curves = _by_load(tier)
     means = [float(np.mean([p.slope_effect.mean() for p in curve])) for curve in curves.values()]
-    scatter = {load: [float(p.slope_effect.std(ddof=1)) for p in curve] for load, curve in curves.items()}
-    last = [s[-1] for s in scatter.values()]
+    last = [float(curve[-1].slope_effect.std(ddof=1)) for curve in curves.values()]
     sentence = (
         f"slopes change mu by {largest:.1%} at most, on average by {', '.join(f'{m:+.2%}' for m in means)} "
         f"({LOADS_IN_WORDS}), with a scatter of {percents(last)} at psi = {found[-1].psi:.1f}; they take mu "
         f"below Eq. (11) in {below} of {len(found) * len(found[0].found['capped'])} solutions, "
         f"by {max(0.0, -depth):.1%} at most"
     )
-    data = _over(tier, "scatter by slopes", scatter)
-    return judged(Verdict.CONDITIONAL, sentence, largest, data=data)
+    return judged(Verdict.CONDITIONAL, sentence, largest, data={})
 
 
 @in_both_tiers("reproduction/table3-capped", metric="at_least", tolerance=0.08)
@@ -146,15 +115,5 @@ def table3(tier: str) -> Measured:
         f"{', '.join(f'{e.mean:.4f}' for e in capped['friction'])}, and "
         f"{percents([e.mean for e in capped['plastic_share']], 0)} of the contact is plastic"
     )
-    data: dict[str, object] = {
-        "sigma_e (um)": [p.rms * 1e6 for p in found],
-        "psi": [p.psi for p in found],
-        "Eq. (11)": LOWEST,
-        "printed mu": [c.friction_coefficient[-1] for c in TABLE3[1:]],
-        "elastic mu": [p.mean("elastic", "friction").mean for p in found],
-        "capped mu": [e.mean for e in capped["friction"]],
-        "capped mu half width": [e.half_width for e in capped["friction"]],
-        "plastic share": [e.mean for e in capped["plastic_share"]],
-        "realisations": len(found[0].found["capped"]),
-    }
+    data = {"plastic share": [e.mean for e in capped["plastic_share"]]}
     return judged(Verdict.CONDITIONAL, sentence, -mu[-1].mean, data=data)

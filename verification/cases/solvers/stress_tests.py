@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from itertools import islice
-from typing import Any
 
 import numpy as np
 
@@ -14,8 +13,7 @@ from verification.exact import lawful_states, positive_definite
 from verification.stress_tests import conditioning
 from verification.stress_tests.axes import AXES, states
 from verification.stress_tests.judge import judged
-from verification.stress_tests.state import Verdict
-from verification.stress_tests.study import Row, counts, run, run_state, summary, unexplained
+from verification.stress_tests.study import Row, counts, run, run_state, unexplained
 
 CLAIM = "at the extremes a result is right, or its failure is of a listed kind: none is wrong or crashes"
 SOURCE = "exact discrete states in 34 digits, scaling laws, closed forms; see verification.stress_tests"
@@ -24,19 +22,12 @@ COSTLY = ("grid", "finite elements", "wedge")
 
 
 def counted(rows: list[Row]) -> Measured:
-    """Return the number of states that are neither right nor of a listed kind, with the table of verdicts."""
+    """Return the number of states that are neither right nor of a listed kind; their ids are its data."""
     numbers = counts(rows)
     numbers.pop("wrong")
-    table = [
-        [row[name] for name in ("series", "from", "to", "states", *Verdict, "fewest digits", "median digits")]
-        for row in summary(rows)
-    ]  # fmt: skip
-    digits: dict[str, list[Any]] = {}
-    for row in rows:
-        digits.setdefault(row["series"], []).append(row["digits"] if row["verdict"] == "right" else None)
     broken = unexplained(rows)
-    data = {"states": len(rows), **numbers, "unexplained": broken, "table": table, "digits": digits}
-    return Measured(value=float(len(broken)), data=data, note=f"{len(rows)} states: {numbers}")
+    data, note = {"unexplained": broken}, f"{len(rows)} states: {numbers}"
+    return Measured(value=float(len(broken)), data=data, note=note)
 
 
 @family(
@@ -99,11 +90,8 @@ def lawful() -> Measured:
     Tolerance: a count
     """
     found = [lawful_states.count(tau) for tau in lawful_states.TAUS]
-    names = ("none", "one", "several")
-    data: dict[str, object] = {name: [getattr(c, name) for c in found] for name in names}
-    data |= {"tau / mean pressure": list(lawful_states.TAUS), "statuses": [c.statuses for c in found]}
     broken = sum(c.wrong for c in found) + (found[0].one != lawful_states.SCENES)
-    return Measured(value=float(broken), data=data)
+    return Measured(value=float(broken), data={"counts": [c._asdict() for c in found]})
 
 
 @case("extremes/condition-numbers", metric="relative", tolerance=0.01, tier="full")

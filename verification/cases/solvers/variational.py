@@ -202,9 +202,7 @@ def one_contact() -> Measured:
     for method in ("fft", "paper"):
         sets[method] = rf.solve(table2_scene(), grid=M_QUICK, method=method, oblique=False).contact
     differing = {name: int(np.count_nonzero(found != loaded)) for name, found in sets.items()}
-    initial = len(Energy.on(M_QUICK, reference().approach).depth)
-    points = {"initial": initial, "final": int(np.count_nonzero(loaded))}
-    return Measured(max(differing.values()), 0.0, unit="elements", data=points | differing)
+    return Measured(max(differing.values()), 0.0, unit="elements", data=differing)
 
 
 @dataclass(frozen=True, eq=False)
@@ -299,12 +297,7 @@ def table2_rerun() -> Measured:
     and BLAS; on 64 x 64 it is several times that, so that a busy machine does not decide
     """
     found = table2()
-    data = {
-        f"{name} at {M}": seconds / found["paper"][M]
-        for name, by_grid in found.items()
-        for M, seconds in by_grid.items()
-    }
-    return Measured(found["NNLS"][64] / found["paper"][64], data=data)
+    return Measured(found["NNLS"][64] / found["paper"][64])
 
 
 @case("variational/table2-growth", metric="at_least", tolerance=1.0, tier="full")
@@ -321,14 +314,7 @@ def table2_growth() -> Measured:
     for name, by_grid in table2().items():
         data |= {f"{name}: M": list(by_grid), f"{name}: s": list(by_grid.values())}
         data[f"{name}: exponent"] = growth(by_grid)
-    for name, hours in PRINTED_HOURS.items():
-        data[f"printed {name}: exponent on the shared grids"] = growth(hours)
     return Measured(growth(table2()["NNLS"]) - growth(table2()["paper"]), data=data)
-
-
-PRINTED_HOURS = {"paper": {100: 0.07, 256: 7.21}, "variational": {100: 1.0, 256: 96.0}}
-"""Table 2 as printed, by grid, where it has both; days as hours. The variational column is [37], Tian and
-Bhushan 1996."""
 
 
 def growth(seconds: Mapping[int, float]) -> float:
