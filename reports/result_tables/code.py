@@ -62,7 +62,12 @@ OWN = {
     "with friction": "refimpl+friction",
     "with friction and slopes": "refimpl+friction+slopes",
 }
-PEERS = {"ASPHER": "aspher", "Tamaas": "tamaas", "ContactMechanics": "ContactMechanics"}
+PEERS = {
+    "ASPHER": "aspher",
+    "ASPHER, quickest options": "aspher+options",
+    "Tamaas": "tamaas",
+    "ContactMechanics": "ContactMechanics",
+}
 
 
 def costs(benchmarks: Mapping[str, Any]) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from verification.benchmarks import page, rounds
+from verification.benchmarks import rounds
 from verification.benchmarks.codes import codes
 from verification.benchmarks.problems import FLATS
 from verification.benchmarks.summary import lines, ratios, row
@@ -35,15 +35,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--threads", type=int, nargs="*", default=[1], help="for every code alike")
     parser.add_argument("--limit", type=float, default=600.0, help="seconds for one solve")
     parser.add_argument("--json", type=Path, required=True, help="record to append the run to")
-    parser.add_argument(
-        "--page", action="store_true", help="print the table of docs/costs.md, measure nothing"
-    )
     options = parser.parse_args(arguments)
-    for threads in () if options.page else sorted(options.threads, reverse=True):
+    for threads in sorted(options.threads, reverse=True):
         run = measured(options.grids, options.codes, options.kinds, options.rounds, threads, options.limit)
         append(run, options.json)
         print(columns(lines(run["rows"], run["ratios"]), indent=""))
-    print(*page.lines(read_result(options.json)["runs"]), sep="\n")
 
 
 def measured(
