@@ -72,7 +72,7 @@ def exact_numbers(one: rf.Scene) -> dict[str, float]:
 
 def solve_all(path: Path, seeds: Iterable[int], kinds: Iterable[str] = tuple(CLASSES)) -> None:
     """Solve what the file has not yet, seed by seed; each finished scene is appended at once."""
-    known = {(one["kind"], one["seed"]) for one in _records(path)}
+    known = {(one["kind"], one["seed"]) for one in records(path)}
     todo = [(kind, seed) for seed in seeds for kind in kinds if (kind, seed) not in known]
     progress = Progress(len(todo))
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -100,7 +100,8 @@ def _solved(kind: str, seed: int) -> dict[str, Any]:
     return {"kind": kind, "seed": seed, "grids": found, "exact": exact_numbers(one)}
 
 
-def _records(path: Path) -> Iterator[dict[str, Any]]:
+def records(path: Path) -> Iterator[dict[str, Any]]:
+    """Yield the whole lines of a file of JSON lines; none where there is no file."""
     if not path.exists():
         return
     for line in path.read_text(encoding="utf-8").splitlines():
@@ -113,7 +114,7 @@ def _records(path: Path) -> Iterator[dict[str, Any]]:
 def solved(path: Path) -> list[Solved]:
     """Return the scenes of a file of lines that were solved on the reference and a grid at least."""
     found = []
-    for one in _records(path):
+    for one in records(path):
         grids = tuple(as_corrected(features_of(grid)) for grid in one["grids"])
         if len(grids) > 1:
             found.append(Solved(one["kind"], one["seed"], grids, one["exact"]))

@@ -134,15 +134,9 @@ def tables(found: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def lines(table: Sequence[dict[str, Any]]) -> list[list[str]]:
-    """Return the lines of the printed table."""
-    shown = {
-        "class": ("class", ""), "number": ("number", ""), "scenes": ("scenes", ""), "held": ("held", ".3f"),
-        "held_at_worst": ("with the reference's bound", ".3f"), "usable": ("usable", ".2f"),
-        "held_of_usable": ("of these", ".3f"), "p": ("p", ".2g"),
-        "median_bar_over_error": ("bar/error", ".2f"), "unbounded": ("unbounded", ".2f"),
-    }  # fmt: skip
-    names = [row | {name: row[name] or "all" for name in ("class", "number")} for row in table]
-    return [[head for head, _ in shown.values()]] + [
-        ["" if row[name] is None else format(row[name], digits) for name, (_, digits) in shown.items()]
-        for row in names
-    ]
+    """Return the lines of the printed table; without a class or number a row is of all of them."""
+
+    def shown(value: Any) -> str:
+        return "" if value is None else f"{value:.3g}" if isinstance(value, float) else str(value)
+
+    return [[*table[0]], *([shown(value) for value in row.values()] for row in table)]

@@ -24,6 +24,7 @@ from scipy.stats import norm
 from refimpl.errors import InputError
 from refimpl.identification import Identification, identify
 from refimpl.identification.forward import COVERAGE
+from verification.coverage.building import records
 from verification.coverage.synthetic_tables import (
     ROUGHNESS_TOLERANCE,
     SyntheticTable,
@@ -180,9 +181,7 @@ def study(
 ) -> list[dict[str, object]]:
     """Return fits of all seeds, or others, or the message of one without a solve; ``log`` keeps them."""
     seeds = list(tables.seeds if seeds is None else seeds)
-    lines = log.read_text(encoding="utf-8").splitlines() if log and log.exists() else []
-    found = [json.loads(each) for each in lines]
-    found = [row for row in found if row["seed"] in seeds]
+    found = [row for row in records(log) if row["seed"] in seeds] if log else []
     line = Progress(len(seeds) - len(found))
     for seed in sorted(set(seeds) - {row["seed"] for row in found}):
         try:

@@ -47,11 +47,6 @@ class CircularPunch:
         peak = self.load / (2 * np.pi * self.radius**2)
         return np.where(inside > 0, peak / np.sqrt(safe), np.where(inside == 0, np.inf, 0.0))
 
-    def displacement(self, r: ArrayLike) -> Array:
-        """Return the normal displacement (m): delta, outside (2 delta/pi) arcsin(a/r), Johnson (3.38)."""
-        outer = np.maximum(1.0, np.asarray(r, dtype=float) / self.radius)
-        return 2 * self.approach / np.pi * np.arcsin(1 / outer)
-
 
 def square_stiffness(side: float, modulus: float) -> float:
     """Return P/delta (N/m) of a square punch of edge ``side`` (m), ``modulus`` E* (Pa).
