@@ -77,9 +77,10 @@ KNOWN = {
     ("Grid", "lengths"): st.tuples(LENGTHS, LENGTHS),
 }
 ANY_SURFACE = st.one_of(*(instances(kind, KNOWN) for kind in KINDS.values()))
+SUMMED = st.lists(ANY_SURFACE, min_size=1, max_size=3).map(lambda p: sum(p[1:], start=p[0]))
 KNOWN |= {
     ("Scene", "friction"): instances(rf.Friction, KNOWN),  # of the laws, what a scene file may hold
-    ("Body", "surface"): st.lists(ANY_SURFACE, min_size=1, max_size=3).map(lambda p: sum(p[1:], start=p[0])),
+    ("Body", "surface"): SUMMED,
 }
 FEW = settings(max_examples=25, derandomize=True, database=None)
 
@@ -100,7 +101,7 @@ def test_a_square_scene_keeps_its_side_and_a_rigid_body_its_name() -> None:
 
 
 @FEW
-@given(ANY_SURFACE)
+@given(SUMMED)
 def test_surfaces(surface: Any) -> None:
     table = json.loads(json.dumps(surface.to_dict()))
     assert plain(surface_from_dict(table, Path("/elsewhere"))) == plain(surface)

@@ -105,25 +105,24 @@ def test_first_contact_on_a_sharp_crest_lies_above_the_parabola() -> None:
     assert off < coarse.error("approach") < 5 * off
 
 
+def steel_ball(load: float, friction: rf.Friction = rf.Friction()) -> rf.Scene:  # noqa: B008  # immutable
+    """A ball on a flat, both of steel."""
+    steel = rf.Material(E=200e9, nu=0.3)
+    return rf.Scene(rf.Body(steel, rf.Sphere(0.02)), rf.Body(steel, rf.Flat()), friction, load, side=SIDE)
+
+
 @pytest.mark.parametrize("load", [0.01, 1e-6])
 @pytest.mark.parametrize("grid", [16, 17])
 def test_a_contact_below_two_elements_bounds_no_pressure(load: float, grid: int) -> None:
-    steel = rf.Material(E=200e9, nu=0.3)
-    ball = rf.Scene(
-        rf.Body(steel, rf.Sphere(0.02)), rf.Body(steel, rf.Flat()), rf.Friction(), load, side=SIDE
-    )
-    assert math.isinf(rf.solve(ball, grid).error("max_pressure"))
+    assert math.isinf(rf.solve(steel_ball(load), grid).error("max_pressure"))
 
 
 def test_a_plastic_area_that_no_element_shows_is_bounded_by_the_pressures_bar() -> None:
-    steel = rf.Material(E=200e9, nu=0.3)
-    ball = rf.Scene(
-        rf.Body(steel, rf.Sphere(0.02)), rf.Body(steel, rf.Flat()), rf.Friction(), load=20.0, side=SIDE
-    )
+    ball = steel_ball(20.0)
     elastic = rf.solve(ball, 24)
     top, bar = elastic.max_pressure, elastic.error("max_pressure")
     near, far = (
-        rf.solve(replace(ball, lower=rf.Body(replace(steel, hardness=H), rf.Flat())), 24)
+        rf.solve(replace(ball, lower=rf.Body(replace(ball.lower.material, hardness=H), rf.Flat())), 24)
         for H in (top + 0.5 * bar, top + 1.5 * bar)
     )
     assert near.plastic_area == far.plastic_area == 0
@@ -147,15 +146,7 @@ def test_a_refinement_returns_its_best_finished_grid(monkeypatch: pytest.MonkeyP
         return replace(solved, state=replace(solved.state, status=rf.Status.STAGNATED))
 
     monkeypatch.setattr(refined, "solve_on_grid", fails_beyond_64)
-    steel = rf.Material(E=200e9, nu=0.3)
-    ball = rf.Scene(
-        rf.Body(steel, rf.Sphere(0.02)),
-        rf.Body(steel, rf.Flat()),
-        rf.Friction(1e7, 0.1),
-        load=20.0,
-        side=SIDE,
-    )
-    s = rf.solve(ball, accuracy=1e-4)
+    s = rf.solve(steel_ball(20.0, rf.Friction(1e7, 0.1)), accuracy=1e-4)
     assert s.grid.shape == (64, 64)
     assert max(finest) > 64
     assert s.status is rf.Status.ACCURACY_NOT_REACHED

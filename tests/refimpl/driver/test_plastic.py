@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -129,14 +128,10 @@ def test_capped_elements_that_bear_too_much_leave_by_their_depth() -> None:
     assert s.plastic_share > 0.97
 
 
-def test_the_scene_and_its_file_choose(tmp_path: Path) -> None:
+def test_the_scene_chooses() -> None:
     off = replace(ROUGH, plastic=False)
     assert not rf.solve(off, 16).plan.includes("plastic")
     assert rf.solve(off, 16, plastic=True).plan.includes("plastic")
-    path = tmp_path / "scene.toml"
-    path.write_text(rf.scene_to_toml(off), encoding="utf-8")
-    assert rf.read_scene(path).plastic is False
-    assert "plastic" not in rf.scene_to_toml(ROUGH)
     with pytest.raises(rf.InputError, match="plastic"):
         replace(ROUGH, plastic=1)
     assert Options(scene=off, grid=8, requested=Terms()).requested.plastic is False

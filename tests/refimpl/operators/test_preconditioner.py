@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -140,15 +142,7 @@ def test_it_is_symmetric_and_positive_on_any_set(later: Mask) -> None:
     assert np.vdot(x, precondition(x)) > 0
 
 
-SCENE = rf.Scene(
-    upper=rf.Body(rf.Material(E=200e9, nu=0.30), rf.Sphere(radius=0.14)),
-    lower=rf.Body(
-        rf.Material(E=118e9, nu=0.30), rf.GaussianRoughness(rms=0.5e-6, correlation_length=104e-6, seed=1)
-    ),
-    friction=rf.Friction(),
-    load=70.0,
-    side=1.61e-3,
-)
+SCENE = replace(rf.read_scene("table1-rough"), friction=rf.Friction())
 
 
 def steps(M: int) -> int:

@@ -18,6 +18,9 @@ from refimpl.planning.terms import budget_of, choose
 from refimpl.scene.discretise import discretise
 
 PAIR = Pair(lower=rf.Material(2e9, 0.25, hardness=90e6), upper=rf.Material(8e9, 0.1))
+C = [(1 + nu) * (1 - 2 * nu) / 2 / E for E, nu in ((2e9, 0.25), (8e9, 0.1))]
+A = sum((1 - nu**2) / E for E, nu in ((2e9, 0.25), (8e9, 0.1)))
+"""pi c of the lower and the upper body, pi a of the pair (1/Pa)."""
 CONTACT = ExpectedContact(
     elements=50, patches=4.0, mean_pressure=10e6, pressure=16e6, approach=2e-6, slope_squared=4e-4,
     least_slope=0.01, least_mean_slope=0.002, border=0.1, extent=0.2, symmetric=False, mirrored=False,
@@ -34,7 +37,7 @@ SCENE = rf.Scene(
 
 def test_slope_terms_by_hand() -> None:
     """mu = 0.2 + 1 MPa / 10 MPa; tilts pi c 2 (0.2 * 16 MPa + 1 MPa), pi c = (1 + nu)(1 - 2 nu) / (2 E)."""
-    lower, upper = ((1 + nu) * (1 - 2 * nu) / 2 / E * 2.0 * 4.2e6 for E, nu in ((2e9, 0.25), (8e9, 0.1)))
+    lower, upper = (c * 2.0 * 4.2e6 for c in C)
     scales = Scales(CONTACT, PAIR, SCENE.friction)
     assert scales.tilts == pytest.approx((lower, upper))
     slope = lower + 4e-4 + 1.5 * 0.002 + 0.4 * 0.01 + 2.0 * 0.1 * 0.02
@@ -47,12 +50,10 @@ def test_slope_terms_by_hand() -> None:
 
 def test_coupling_by_hand() -> None:
     """c / a with lower minus upper; four patches halve the change of the area."""
-    c = [(1 + nu) * (1 - 2 * nu) / 2 / E for E, nu in ((2e9, 0.25), (8e9, 0.1))]
-    a = [(1 - nu**2) / E for E, nu in ((2e9, 0.25), (8e9, 0.1))]
-    strength = (c[0] - c[1]) / sum(a) * 0.3
+    strength = (C[0] - C[1]) / A * 0.3
     local = 0.35 * strength
     area = 2.0 * strength**2 + local / 2 + 2 * math.sqrt(local / 50)
-    tilt = 0.5 * (c[0] - c[1]) * 2.0 * 4.2e6
+    tilt = 0.5 * (C[0] - C[1]) * 2.0 * 4.2e6
     found = effects_of("coupled", Scales(CONTACT, PAIR, SCENE.friction))
     assert found.area == pytest.approx(area)
     assert found.friction == pytest.approx((tilt + local * 0.01 + 0.1 * area) / 0.3)
@@ -101,10 +102,8 @@ def test_tilt_by_hand() -> None:
 @pytest.mark.parametrize("beta", [0.0, 0.3])
 def test_facets_by_hand(symmetric: bool, beta: float) -> None:
     """rms slope 0.02; c / a of the pair, lower minus upper and their sum, with half of its squared slopes."""
-    c = [(1 + nu) * (1 - 2 * nu) / 2 / E for E, nu in ((2e9, 0.25), (8e9, 0.1))]
-    a = sum((1 - nu**2) / E for E, nu in ((2e9, 0.25), (8e9, 0.1)))
-    local = 0.7 * ((c[0] - c[1]) / a + beta) * 0.02
-    slope = 0.0 if symmetric and not beta else (beta + 0.5 * sum(c) / a) * 4e-4
+    local = 0.7 * ((C[0] - C[1]) / A + beta) * 0.02
+    slope = 0.0 if symmetric and not beta else (beta + 0.5 * sum(C) / A) * 4e-4
     area = local + 2 * math.sqrt((4 if symmetric else 1) * local / 50)
     scales = Scales(replace(CONTACT, symmetric=symmetric), PAIR, rf.Friction(0.0, beta))
     expected = Effect(slope / beta, area) if beta else Effect(0.0, area, bare=slope)

@@ -158,6 +158,8 @@ BAD_FILES = {
     "body as number": ("upper", "load = 1.0\nside = 1.0\nlower = 3\nupper = 4\n"),
     "no TOML": ("scene", "load 70"),
     "hardness of zero": ("upper.material.hardness", TOML.replace("nu = 0.3", "nu = 0.3\nhardness = 0", 1)),
+    "a word for a modulus": ("upper.material.E", TOML.replace("200000000000.0", '"stiff"', 1)),
+    "neither side nor size": ("side", TOML.replace("side = 0.00161\n", "", 1)),
     "no radius": ("upper.surface[0].radius", TOML.replace(", radius = 0.14", "", 1)),
     "unknown key of a surface": ("upper.surface[0].rms", TOML.replace("radius", "rms", 1)),
     "noise too fine for the square": ("lower.surface[1].correlation_length", rough(correlation_length=1e-9)),

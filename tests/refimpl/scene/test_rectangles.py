@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -110,51 +109,6 @@ def test_arrays_are_never_squeezed() -> None:
     for pixel in (0.0, (1.0,), (1.0, -1.0), "a"):
         with pytest.raises(rf.InputError, match=r"^pixel = "):
             rf.ArraySurface(z, pixel=pixel)  # type: ignore[arg-type]
-
-
-# --- files ---
-
-TOML = """
-load = 20.0
-size = [2e-3, 1e-3]
-[upper.material]
-E = "rigid"
-nu = 0.3
-[[upper.surface]]
-kind = "sphere"
-radius = 0.14
-[lower.material]
-E = 118e9
-nu = 0.3
-"""
-
-
-def test_scene_files_hold_sizes_and_rigid_bodies(tmp_path: Path) -> None:
-    file = tmp_path / "scene.toml"
-    file.write_text(TOML)
-    scene = rf.read_scene(file)
-    assert scene.lengths == (2e-3, 1e-3)
-    assert scene.upper.material.is_rigid
-    text = rf.scene_to_toml(scene)
-    assert 'E = "rigid"' in text
-    assert "side" not in text
-    file.write_text(text)
-    again = rf.read_scene(file)
-    assert (again.lengths, again.materials) == (scene.lengths, scene.materials)
-    for old, new, field in (
-        ("size = ", "side = 1e-3\nsize = ", "size"),
-        ("[2e-3, 1e-3]", "[2e-3]", "size"),
-        ("[2e-3, 1e-3]", "[2e-3, -1e-3]", "size"),
-        ("[2e-3, 1e-3]", "[2e-3, 1e-6]", "size"),
-        ("size = [2e-3, 1e-3]", "", "side"),
-        ('"rigid"', '"stiff"', "upper.material.E"),
-        ("118e9", '"rigid"', "upper.material.E"),
-    ):
-        file.write_text(TOML.replace(old, new, 1))
-        with pytest.raises(rf.InputError) as refused:
-            rf.read_scene(file)
-        assert refused.value.field == field
-        assert "\n" not in str(refused.value)
 
 
 # --- rigid bodies ---

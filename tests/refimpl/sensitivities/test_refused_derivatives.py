@@ -18,12 +18,10 @@ from tests.changed import changed
 
 STEEL = rf.Material(E=200e9, nu=0.3)
 COPPER = rf.Material(118e9, 0.2)
-ROUGH = rf.Scene(
-    upper=rf.Body(STEEL, rf.Sphere(radius=0.14)),
+ROUGH = replace(
+    rf.read_scene("table1-smooth"),
     lower=rf.Body(COPPER, rf.GaussianRoughness(rms=8e-6, correlation_length=200e-6, seed=2)),
     friction=rf.Friction(tau=15e6, beta=0.2),
-    load=70.0,
-    side=1.61e-3,
 )
 
 

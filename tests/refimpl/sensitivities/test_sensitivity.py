@@ -111,13 +111,7 @@ CORRELATION_LENGTH = "lower.surface[0].correlation_length"
 
 def test_a_derivative_that_two_ways_disagree_on_says_so() -> None:
     """A surface that is stretched meets elsewhere: on few elements the sign of its answer is not known."""
-    scene = rf.Scene(
-        upper=rf.Body(STEEL, rf.Sphere(radius=0.05)),
-        lower=rf.Body(POLYMER, rf.GaussianRoughness(rms=0.8e-6, correlation_length=150e-6, seed=3)),
-        friction=rf.Friction(tau=0.35e6, beta=0.12),
-        load=5.0,
-        side=2e-3,
-    )
+    scene = rf.read_scene("metal-polymer")
     found = grid_sensitivity(scene, rf.solve(scene, 64), [CORRELATION_LENGTH])
     for number in ("max_pressure", "binormal_force"):
         scatter, derivatives = found.scatter[number], found.derivatives[number]

@@ -1,4 +1,4 @@
-"""Problems that scenes do not pose: another friction law, strips and rows of elements."""
+"""Problems that scene files do not pose: another friction law."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 import refimpl as rf
 from refimpl.driver.reference import solve_reference
-from refimpl.grid import Array, Grid
+from refimpl.grid import Grid
 from refimpl.model.certificate import State, certify
 from refimpl.model.friction import FrictionLaw
 from refimpl.model.problem import Problem, Terms
@@ -114,48 +114,3 @@ def test_the_papers_scheme_solves_it_too() -> None:
     # pressure steps end at 1e-10 of the pressure; 100 of them for what steepest descent still had to go
     assert np.abs(paper.pressure - fft.pressure).max() <= 1e-8 * fft.pressure.max()
     assert np.array_equal(paper.excluded, fft.excluded)
-
-
-AGREEMENT = 1e-10
-"""Of the largest pressure."""
-
-SCENE = replace(SMOOTH, friction=rf.Friction(tau=3e5, beta=0.2), load=2.0)
-GRIDS = {
-    "coarser grids": Grid((48, 32), (1.6e-3, 1.2e-3)),
-    "strip": Grid((60, 5), (1.6e-3, 2e-4)),
-    "row": Grid((24, 1), (1.6e-3, 1e-4)),
-    "two columns": Grid((2, 30), (1e-4, 1.6e-3)),
-}
-on_grids = pytest.mark.parametrize("name", GRIDS)
-of_topologies = pytest.mark.parametrize("periodic", [False, True])
-
-
-def heights(grid: Grid, seed: int = 3) -> Array:
-    """Smooth random waves that repeat on the domain, of half a micrometre."""
-    random, found = np.random.default_rng(seed), grid.zeros
-    x, y = grid.x[:, None] / grid.lengths[0], grid.y[None, :] / grid.lengths[1]
-    for k, m in ((1, 0), (0, 1), (1, 2), (2, -1), (3, 1)):
-        found += random.normal() * np.cos(2 * np.pi * (k * x + m * y) + random.uniform(0, 6))
-    return 5e-7 * found
-
-
-def problem_on(grid: Grid) -> Problem:
-    upper = rf.Flat() if grid.periodic else SCENE.upper.surface
-    lower = rf.ArraySurface(heights(grid), pixel=grid.spacings)
-    rough = replace(SCENE, upper=rf.Body(HARD, upper), lower=rf.Body(SOFT, lower), periodic=grid.periodic)
-    load = SCENE.load * grid.nominal_area / SCENE.side**2  # the same mean pressure on every domain
-    return replace(discretise(rough, grid, Terms()), load=load)
-
-
-@on_grids
-@of_topologies
-def test_the_reference_and_the_production_solver_agree(name: str, periodic: bool) -> None:
-    """On grids of one or two rows and with coarser ones, which the random scenes of `test_plain` lack."""
-    problem = problem_on(replace(GRIDS[name], periodic=periodic))
-    dense, fft = solve_reference(problem), solve_fft(problem, TOLERANCE, Counter())
-    assert fft.status is dense.status
-    assert np.array_equal(fft.excluded, dense.excluded)
-    assert np.abs(fft.pressure - dense.pressure).max() <= AGREEMENT * dense.pressure.max()
-    assert fft.certificate.satisfies(TOLERANCE)
-    assert fft.contact_area == dense.contact_area > 0
-    assert fft.friction_coefficient == pytest.approx(dense.friction_coefficient, rel=1e-9)

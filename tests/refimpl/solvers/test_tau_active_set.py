@@ -152,11 +152,22 @@ def test_a_law_without_a_jump_that_moves_any_holds_everywhere_and_needs_one_solv
     assert not found.excluded.any()
 
 
-def test_the_contact_of_the_gradual_state_is_the_active_set() -> None:
-    solver = Played({"?": "xx."})
+@pytest.mark.parametrize(
+    ("contacts", "asked", "excluded"),
+    [
+        ({"?": "xx."}, ["? early", "xx."], "..."),  # the contact of the gradual state is the set
+        ({"?": "xx.", "xx.": "xxx"}, ["? early", "xx."], "..x"),  # elements that come back
+        # elements out of contact are dropped for good
+        ({"?": "xxx.", "xxx.": "x.xx", "x.x.": "xxx."}, ["? early", "xxx. early", "x.x."], ".x.."),
+    ],
+)
+def test_the_set_follows_the_contact(contacts: dict[str, str], asked: list[str], excluded: str) -> None:
+    solver = Played(contacts)
     found = followed(solver)
-    assert (found.settled, found.solves, solver.asked) == (True, 2, ["? early", "xx."])
-    assert found.status() is Status.CONVERGED
+    assert (found.settled, found.solves, solver.asked) == (True, len(asked), asked)
+    assert np.array_equal(found.excluded, mask(excluded))
+    assert found.status() is (Status.CYCLED if "x" in excluded else Status.CONVERGED)
+    assert found.status(Status.STAGNATED) is Status.STAGNATED
 
 
 @pytest.mark.parametrize(("coupled", "oblique"), [(True, False), (False, True), (False, False)])
@@ -165,23 +176,6 @@ def test_the_gradual_state_may_end_early_where_tau_moves_a_surface(coupled: bool
     solver = Played({"?": "xx."})
     followed(solver, problem_of(SCENE, 4, coupled=coupled, oblique=oblique))
     assert solver.asked == ["? early" if coupled or oblique else "?", "xx."]
-
-
-def test_elements_that_come_back_are_excluded() -> None:
-    solver = Played({"?": "xx.", "xx.": "xxx"})
-    found = followed(solver)
-    assert solver.asked == ["? early", "xx."]
-    assert np.array_equal(found.excluded, mask("..x"))
-    assert found.status() is Status.CYCLED
-    assert found.status(Status.STAGNATED) is Status.STAGNATED
-
-
-def test_active_elements_out_of_contact_are_dropped_for_good() -> None:
-    solver = Played({"?": "xxx.", "xxx.": "x.xx", "x.x.": "xxx."})
-    found = followed(solver)
-    assert solver.asked == ["? early", "xxx. early", "x.x."]
-    assert np.array_equal(found.excluded, mask(".x.."))
-    assert found.solves == 3
 
 
 @pytest.mark.parametrize(("bears", "all_on", "asked"), [(1e9, "xxx", 1), (1e9, "xx.", 1), (1e-9, "xxx", 0)])

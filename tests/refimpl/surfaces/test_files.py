@@ -16,23 +16,7 @@ from refimpl.errors import InputError
 from refimpl.grid import Grid
 from refimpl.measured import MeasuredSurface, reader_process, readers
 from refimpl.measured.reader_process import read_untrusted
-from tests.refimpl.surfaces.measured import DX, DY, NX, NY, RNG, ROUGH, SIDE, quietly, write_npy, write_x3p
-
-
-def test_text_with_an_instruments_header_is_scaled_by_it(tmp_path: Path) -> None:
-    """Header: lines of constant y from the top, a conversion factor of the heights."""
-    path = tmp_path / "a.asc"
-    header = (
-        f"h={NY} w={NX}\npixel size=1.500000e-007 m\ndata unit=rad\nheight conversion factor (-> m)=2.5e-8\n"
-    )
-    rows = "\n".join(" ".join(f"{v:.17g}" for v in row) for row in (ROUGH / 2.5e-8).T[::-1])
-    path.write_text(header + rows + "\n")
-    reading = MeasuredSurface(path).reading
-    np.testing.assert_allclose(reading.heights, ROUGH, rtol=1e-14, atol=0)
-    np.testing.assert_allclose(reading.pixel, (1.5e-7, 1.5e-7), rtol=1e-14)
-    overridden = MeasuredSurface(path, unit="um").reading
-    np.testing.assert_allclose(overridden.heights, reading.heights * 1e-6, rtol=1e-14, atol=0)
-    assert overridden.notes == ("unit 'um' is used; the file states 'm'",)
+from tests.refimpl.surfaces.measured import DX, DY, RNG, ROUGH, SIDE, quietly, write_npy, write_x3p
 
 
 def test_the_missing_optional_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -18,7 +18,7 @@ from SurfaceTopography.Container.SurfaceContainer import InMemorySurfaceContaine
 
 from refimpl.errors import InputError
 from refimpl.grid import Grid
-from refimpl.measured import MeasuredSurface, missing_points
+from refimpl.measured import MeasuredSurface
 from refimpl.measured.readers import read
 from refimpl.measured.reading import ALONG_Y, ARRAY, IMAGE
 from tests.refimpl.surfaces import instrument_writers as write
@@ -309,14 +309,3 @@ def test_a_file_of_another_kind_is_named_with_the_remedy(
         path.write_bytes(content)
     with pytest.raises(InputError, match=rf"expected a map of heights: this is an? {kind}.*; .*{remedy}"):
         MeasuredSurface(path, unit="um", pixel_size=1e-6).reading  # noqa: B018  # reading is what raises
-
-
-@pytest.mark.parametrize("length", [1e-6, 1e-4])
-def test_a_large_hole_is_filled_on_long_pixels_too(length: float) -> None:
-    """Laplace's equation holds on its points, with differences over the pixel's lengths."""
-    z = np.random.default_rng(1).standard_normal((130, 130))
-    z[5:125, 5:125] = np.nan
-    z = missing_points.fill(z, (1e-6, length))
-    along = (z[4:124, 5:125] + z[6:126, 5:125] - 2 * z[5:125, 5:125]) / 1e-6**2
-    across = (z[5:125, 4:124] + z[5:125, 6:126] - 2 * z[5:125, 5:125]) / length**2
-    assert np.abs(along + across).max() * 1e-6**2 < 1e-9

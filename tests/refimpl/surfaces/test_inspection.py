@@ -36,6 +36,12 @@ def gaussian(values: dict[str, float] = GAUSSIAN, seed: int = 0) -> np.ndarray:
     return _drawn(SHAPE, PIXEL, _gaussian_psd(values), values["rms"], rng)
 
 
+def inspected(folder: Path, z: np.ndarray, **keys: Any) -> rf.Inspection:
+    """The inspection of a file with that map, in m unless stated."""
+    np.save(folder / "a.npy", z)
+    return rf.inspect_surface(folder / "a.npy", **{"unit": "m", "pixel_size": PIXEL} | keys)
+
+
 # --- analytic values ---
 
 
@@ -69,14 +75,13 @@ def test_a_sphere_cap(tmp_path: Path) -> None:
     Sdq^2 = s^2 / (6 R^2); the sphere is one up to (s / R)^2."""
     n, edge, radius = 120, 1e-6, 1e-2
     x = (np.arange(n) - (n - 1) / 2) * edge
-    np.save(tmp_path / "cap.npy", np.sqrt(radius**2 - x[:, None] ** 2 - x[None, :] ** 2))
-    keys = {"unit": "m", "pixel_size": edge}
-    found = rf.inspect_surface(tmp_path / "cap.npy", level="mean", **keys).parameters
+    cap = np.sqrt(radius**2 - x[:, None] ** 2 - x[None, :] ** 2)
+    found = inspected(tmp_path, cap, pixel_size=edge, level="mean").parameters
     s = n * edge
     assert found["Sq"] == pytest.approx(s**2 / (math.sqrt(360) * radius), rel=2e-4)
     assert found["Sz"] == pytest.approx(s**2 / (4 * radius), rel=2e-2)  # of points, not up to the corners
     assert found["Sdq"] == pytest.approx(s / (math.sqrt(6) * radius), rel=1e-2)
-    sphere = rf.inspect_surface(tmp_path / "cap.npy", level="sphere", **keys)
+    sphere = inspected(tmp_path, cap, pixel_size=edge, level="sphere")
     assert sphere.radius == pytest.approx(radius, rel=1e-6)
     assert sphere.parameters["Sq"] < 1e-6 * found["Sq"]
 
@@ -105,8 +110,8 @@ def test_parameters_agree_with_surfalize(
 ) -> None:
     """Numbers of surfalize 0.19.2 on these maps, levelled by a plane; Sal to Svk are of sampled curves."""
     rng = np.random.default_rng(2)
-    np.save(tmp_path / "a.npy", _drawn((256, 256), (1e-6, 1e-6), _gaussian_psd(values), 1e-6, rng))
-    found = rf.inspect_surface(tmp_path / "a.npy", unit="m", pixel_size=1e-6).parameters
+    drawn = _drawn((256, 256), (1e-6, 1e-6), _gaussian_psd(values), 1e-6, rng)
+    found = inspected(tmp_path, drawn, pixel_size=1e-6).parameters
     for name, value in stated.items():
         sampled = {"Sal": 1e-3, "Str": 1e-3, "Sk": 1e-3, "Spk": 5e-3, "Svk": 5e-3}
         assert found[name] == pytest.approx(value, rel=sampled.get(name, 1e-9)), name
@@ -120,8 +125,7 @@ def test_curves_are_numbers_with_their_normalisation(tmp_path: Path) -> None:
     cell = 1.0 / (math.prod(SHAPE) * math.prod(PIXEL))  # d^2q / (2 pi)^2
     spectra = [Spectrum.of(gaussian(seed=k), PIXEL) for k in range(8)]
     assert np.mean([s.count @ s.C * cell for s in spectra]) == pytest.approx(1e-12, rel=0.1)
-    np.save(tmp_path / "a.npy", gaussian(seed=3))
-    found = rf.inspect_surface(tmp_path / "a.npy", unit="m", pixel_size=PIXEL)
+    found = inspected(tmp_path, gaussian(seed=3))
     curves = found.document()["curves"]
     assert "(2 pi)^-2 int C d^2q" in curves["spectrum"]["normalisation"]
     assert len(curves["spectrum"]["q"]) == len(curves["spectrum"]["C"])
@@ -148,8 +152,7 @@ def test_the_hurst_exponent_is_within_its_deviation(
     within = 0
     for seed in range(4):
         drawn = _drawn((256, 256), (1e-6, 1e-6), _self_affine_psd(values), 1e-6, np.random.default_rng(seed))
-        np.save(tmp_path / "a.npy", drawn)
-        found = rf.inspect_surface(tmp_path / "a.npy", unit="m", pixel_size=1e-6)
+        found = inspected(tmp_path, drawn, pixel_size=1e-6)
         assert found.deviations["hurst"] < 0.1
         within += abs(found.parameters["hurst"] - hurst) <= 2 * found.deviations["hurst"]
     assert within >= 3
@@ -163,26 +166,21 @@ def test_a_lay_of_grooves_and_of_the_transposed_map(tmp_path: Path, degrees: int
     across = math.cos(turn) * y - math.sin(turn) * x
     z = np.sin(across / 3.0) + 0.6 * np.sin(across / 4.3 + 1.0) + 0.05 * rng.normal(size=(120, 120))
     for heights, lay in ((z, degrees), (z.T, 90 - degrees)):
-        np.save(tmp_path / "a.npy", heights)
-        found = rf.inspect_surface(tmp_path / "a.npy", unit="um", pixel_size=1e-6).parameters["lay_deg"]
+        found = inspected(tmp_path, heights, pixel_size=1e-6).parameters["lay_deg"]
         assert abs((found - lay + 90) % 180 - 90) < 2
-    np.save(tmp_path / "a.npy", gaussian(seed=4))
-    isotropic = rf.inspect_surface(tmp_path / "a.npy", unit="m", pixel_size=PIXEL)
-    assert math.isnan(isotropic.parameters["lay_deg"])
+    assert math.isnan(inspected(tmp_path, gaussian(seed=4)).parameters["lay_deg"])
 
 
 @pytest.mark.parametrize("holes", ["scattered", "one"])
 def test_a_slope_of_the_spectrum_that_holes_decide_is_no_number(tmp_path: Path, holes: str) -> None:
     """A slope that is stated is within three deviations of that of the map without holes."""
     z, rng = gaussian(seed=6), np.random.default_rng(6)
-    np.save(tmp_path / "a.npy", z)
-    whole = rf.inspect_surface(tmp_path / "a.npy", unit="m", pixel_size=PIXEL)
+    whole = inspected(tmp_path, z)
     if holes == "scattered":
         z[rng.random(z.shape) < 0.01] = np.nan
     else:
         z[100:140, 90:130] = np.nan
-    np.save(tmp_path / "a.npy", z)
-    found = rf.inspect_surface(tmp_path / "a.npy", unit="m", pixel_size=PIXEL)
+    found = inspected(tmp_path, z)
     if holes != "one":
         away = abs(found.parameters["hurst"] - whole.parameters["hurst"])
         assert away <= 3 * found.deviations["hurst"]
@@ -210,8 +208,8 @@ def test_the_misfit_is_less_for_the_kind_that_the_map_is_of() -> None:
 
 
 def test_what_the_map_does_not_tell_is_no_number(tmp_path: Path) -> None:
-    np.save(tmp_path / "ridge.npy", np.sin(np.arange(60) / 20)[:, None] * np.ones(50))
-    found = rf.inspect_surface(tmp_path / "ridge.npy", unit="um", pixel_size=1e-6).parameters
+    ridge = np.sin(np.arange(60) / 20)[:, None] * np.ones(50)
+    found = inspected(tmp_path, ridge, unit="um", pixel_size=1e-6).parameters
     assert set(found) == set(PARAMETERS)
     assert math.isnan(found["Str"])
     assert math.isnan(found["le_along"])
@@ -222,9 +220,7 @@ def test_what_the_map_does_not_tell_is_no_number(tmp_path: Path) -> None:
 def test_an_inspection_says_what_the_file_holds(tmp_path: Path) -> None:
     z = gaussian()
     z[0, 0] = np.nan
-    np.save(tmp_path / "a.npy", z * 1e6)
-    found = rf.inspect_surface(tmp_path / "a.npy", unit="um", pixel_size=PIXEL, size=(100e-6, 60e-6))
-    document = found.document()
+    document = inspected(tmp_path, z * 1e6, unit="um", size=(100e-6, 60e-6)).document()
     assert document["points"] == [256, 200]
     assert document["missing"] == 1
     assert document["window"] == {"points": [100, 40], "missing": 0}
@@ -243,8 +239,7 @@ def test_a_text_without_a_header_is_named_as_such_and_turned_by_the_angle_of_the
     degrees = float(re.findall(r"rotate_deg = (-?\d+)", note)[0])
     turned = rf.inspect_surface(tmp_path / "image.txt", rotate_deg=degrees, **edges)
     assert not [note for note in turned.document()["notes"] if "no header" in note]
-    np.save(tmp_path / "array.npy", z)
-    array = rf.inspect_surface(tmp_path / "array.npy", **edges)
+    array = inspected(tmp_path, z, **edges)
     assert not [note for note in array.document()["notes"] if "no header" in note]
     np.testing.assert_allclose(turned.z, array.z, atol=1e-12)
 

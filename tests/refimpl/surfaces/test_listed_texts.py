@@ -124,7 +124,7 @@ LISTED = (
     File("names of columns", "a;b;c;d;e\n" + text(image(), ";"), IMAGE),
     File("Gwyddion", GWYDDION.format("z") + text(image(), "\t"), IMAGE, {}),
     File("h and w", "h=4 w=5\npixel size=2.0e-6 m\nheight conversion factor (-> m)=1e-6\n"
-         + text(image(), " "), IMAGE, {"pixel_size": PIXEL}, "pixel of"),
+         + text(image(), " "), IMAGE, {"pixel_size": PIXEL}, "the file states 2e-06 x 2e-06 m"),
     File("ESRI grid", "ncols 5\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 2\nNODATA_value -9999\n"
          + text(image("-9999"), " "), IMAGE, note="-9999", hole=True),
     # footers

@@ -199,7 +199,7 @@ def test_the_pitch_of_points_is_their_span_over_whole_steps(tmp_path: Path) -> N
     assert found.heights[3, 2] == 32
 
 
-@pytest.mark.parametrize("pixel", [(1.0, 1.0), (1.0, 3.0), (2.0, 0.5)])
+@pytest.mark.parametrize("pixel", [(1.0, 1.0), (1.0, 3.0), (2.0, 0.5), (1.0, 100.0)])
 @pytest.mark.parametrize("size", [20, 70])
 def test_holes_are_filled_by_the_saddle_around_them(pixel: tuple[float, float], size: int) -> None:
     """x^2 - y^2 + 0.3 x y is harmonic, discretely as well; small holes by elimination, large ones by CG."""

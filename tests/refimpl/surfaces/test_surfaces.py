@@ -185,12 +185,6 @@ SELF_AFFINE = {
 }  # fmt: skip
 
 
-def test_a_sum_reads_back_from_its_table() -> None:
-    """Surfaces of one kind with all their keys: `tests.test_round_trips`."""
-    surface = Sphere(1.0) + GaussianRoughness(1e-6, 1e-4, 5)
-    assert surface_from_dict(surface.to_dict()) == surface
-
-
 def test_relative_paths_start_at_the_folder() -> None:
     surface = surface_from_dict({"kind": "measured", "path": "a.x3p"}, Path("/scenes"))
     assert isinstance(surface, MeasuredSurface)

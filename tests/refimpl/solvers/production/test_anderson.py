@@ -26,15 +26,6 @@ def iterates(matrix: Array, start: Array, updates: int) -> list[Array]:
     return used
 
 
-@pytest.mark.parametrize("radius", [2.0, 5.0, 30.0])
-def test_a_linear_map_is_solved_in_as_many_updates_as_it_has_dimensions(radius: float) -> None:
-    """And a first one; plain updates grow by the radius each."""
-    n, start = 8, np.ones((2, 4))
-    used = iterates(skew(n, radius, seed=1), start, n + 1)
-    assert np.abs(used[-1]).max() <= 1e-9 * radius
-    assert np.abs(used[-2]).max() > 1e-6
-
-
 @pytest.mark.parametrize(("updates", "depth"), [(1, 20), (3, 20), (6, 20), (6, 3), (9, 3), (5, 1)])
 def test_the_defect_that_remains_is_least_over_the_last_differences(
     updates: int, depth: int, monkeypatch: pytest.MonkeyPatch
