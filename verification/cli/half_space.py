@@ -92,14 +92,13 @@ def _posed(options: argparse.Namespace) -> tuple[Scene, str]:
 def _document(name: str, note: str, verdict: SurfaceVerdict) -> Mapping[str, object]:
     import numpy as np
 
-    local = verdict.local
     return {
         "scene": name,
         "assumed": note,
         "grid": list(verdict.solution.grid.shape),
         "share_above_2_percent": verdict.share_above,
-        "largest_local_error": float(local.max()) if np.isfinite(local).all() else None,
-        "median_local_error": float(np.median(local)) if np.isfinite(np.median(local)) else None,
+        "largest_local_error": float(verdict.local.max()),
+        "median_local_error": float(np.median(verdict.local)),
         "short_wave_share": verdict.short_waves,
         "numbers": verdict.numbers(),
         "advice": verdict.advice,

@@ -16,7 +16,7 @@ from verification.cli.options import (
     output_file,
     three_numbers,
 )
-from verification.cli.output import PICTURES, check_outputs, check_suffix, emit, plain, refusal
+from verification.cli.output import PICTURES, check_outputs, check_suffix, emit, refusal
 from verification.output.files import StatusLine
 from verification.output.text_table import columns, wrapped
 
@@ -89,7 +89,7 @@ def run(options: argparse.Namespace) -> int:
             from verification.cli.plot_surface import draw_inspection
 
             draw_inspection(found, options.plot)
-    emit(plain(document), options.json, text)
+    emit(document, options.json, text)
     return 0
 
 

@@ -86,7 +86,8 @@ def files_of(scene: Scene) -> list[Path]:
 
 
 def emit(document: object, path: Path | None, table: str) -> None:
-    """Write the document where asked and show the table; '-' prints the document in the table's place."""
+    """Write the document, `plain`, where asked and show the table; '-' prints it in the table's place."""
+    document = plain(document)
     if path == Path("-"):
         text = to_json(document)
         try:

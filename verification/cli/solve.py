@@ -25,7 +25,6 @@ from verification.cli.output import (
     check_suffix,
     emit,
     files_of,
-    plain,
     refusal,
 )
 from verification.cli.solve_table import document, not_usable, show_finished, table
@@ -230,7 +229,7 @@ def _with_budget(
     with StatusLine() as line:
         line.show("uncertainty budget: what every parameter changes")
         budgets = budget_of(scene, solution, tolerances)
-    found["budget"] = plain(budget.document(budgets))
+    found["budget"] = budget.document(budgets)
     return f"\n{budget.table(budgets)}"
 
 

@@ -16,7 +16,6 @@ from verification.cli.output import (
     check_suffix,
     check_workers,
     emit,
-    plain,
     refusal,
 )
 from verification.output.files import StatusLine
@@ -200,7 +199,7 @@ def _export(options: argparse.Namespace, done: Sweep, store: Path, failed: list[
         "store": str(store),
         **{name: getattr(done, name) for name in ("found", "finished", "failures", "statuses")},
         "seconds": round(done.seconds, 3),
-        "rows": plain(rows),
+        "rows": rows,
         "provenance": provenance(),
     }
     emit(document, options.json, table)

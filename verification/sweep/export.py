@@ -14,11 +14,12 @@ from verification.output.files import replacing, write_text
 from verification.output.text_table import csv_text
 from verification.sweep.run import Row
 from verification.sweep.store import COLUMNS
+from verification.sweep.study_file import TEXTS
 
-UNITS = {
+UNITS: dict[str, str] = {
     **{name: unit for name, (unit, _) in (SCENE | FRICTION).items()},
     **{name: "" if quantity.unit == "1" else quantity.unit for name, quantity in QUANTITIES.items()},
-    **dict.fromkeys(("upper_rms", "lower_rms", "correlation_length"), "m"),
+    **{name: unit for name, (unit, _) in TEXTS["vary"].items()},
     "seconds": "s",
 }
 """Units of the columns; those of an error or a cycle are its number's, all others have none."""
