@@ -15,8 +15,9 @@ from verification.cli.options import (
     names,
     option,
     output_file,
+    picture,
 )
-from verification.cli.output import PICTURES, check_outputs, check_suffix, emit, files_of
+from verification.cli.output import check_outputs, emit, files_of
 from verification.output.files import StatusLine
 from verification.output.text_table import columns, wrapped
 
@@ -43,7 +44,7 @@ OPTIONS: Options = {
     "--fit": option("fit the hardness as well", metavar="NAME,...", type=names, default=()),
     "--realisations": option("draws of random surfaces (default 1)", metavar="N", type=int, default=1),
     "--store": option("keep finished solves there, and go on", metavar="FILE.json", type=output_file),
-    "--plot": option("draw data, fit, ellipse and residuals", metavar="FILE.png", type=output_file),
+    "--plot": option("draw data, fit, ellipse and residuals", metavar="FILE.png", type=picture),
 }
 
 
@@ -54,7 +55,6 @@ def run(options: argparse.Namespace) -> int:
     from verification.cli.identify_store import SolveStore, key
     from verification.output.provenance import provenance
 
-    check_suffix("--plot", options.plot, PICTURES)
     scene, tolerances = read_scene(options.scene), read_tolerances(options.scene)
     inputs = [Path(options.scene), options.data, *files_of(scene)]
     check_outputs(inputs, store=options.store, plot=options.plot, json=options.json)

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from refimpl import InputError, Scene
     from verification.framework.case import Result
 
-PICTURES = (".png", ".svg", ".pdf")
 Selected = TypeVar("Selected")
 
 
@@ -53,14 +52,6 @@ def select_or_refuse(only: Sequence[str], select: Callable[[], Selected]) -> Sel
         return select()
     except LookupError as nothing:
         raise refusal("--only", only, f"the id of a case ({nothing}; see --list)") from nothing
-
-
-def check_suffix(option: str, path: Path | None, suffixes: Sequence[str]) -> None:
-    """Raise InputError, before any work, for a file whose name ends in none of the suffixes."""
-    if path is not None and path.suffix not in suffixes:
-        *others, last = suffixes
-        ends = f"{', '.join(others)} or {last}" if others else last
-        raise refusal(option, str(path), f"a file name that ends in {ends}")
 
 
 def check_workers(option: str, count: int) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from verification.cli.plot_style import BLACK, BLUE, LENGTHS, ORANGE, PINK, PRESSURES, Unit, unit_at_scale
+from verification.cli.plot_style import BLACK, BLUE, ORANGE, PINK, scaled_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from refimpl import Solution
     from refimpl.grid import Array, Mask
+    from refimpl.solution.units import Unit
 
 MARGIN = 0.12  # share of the contact's longer side, on each side of it
 LEAST = 8  # elements along each side of the window
@@ -97,9 +98,9 @@ def view_of(solution: Solution) -> View:
         peak=peak_of(solution.pressure),
         spacings=grid.spacings,
         whole=whole,
-        length=unit_at_scale(max(_sides(first, last, grid.spacings)), LENGTHS),
-        pressure=unit_at_scale(solution.max_pressure, PRESSURES),
-        gap=unit_at_scale(float(np.percentile(gap, 99)), LENGTHS),
+        length=scaled_unit(max(_sides(first, last, grid.spacings)), "m"),
+        pressure=scaled_unit(solution.max_pressure, "Pa"),
+        gap=scaled_unit(float(np.percentile(gap, 99)), "m"),
     )
 
 
@@ -168,7 +169,7 @@ def pressure_map(axes: Axes, solution: Solution, view: View) -> None:
 
 def shear_map(axes: Axes, solution: Solution, view: View) -> None:
     """Draw the local friction in contact; elements without adhesive shear in a colour of their own."""
-    unit = unit_at_scale(float(solution.traction.max()), PRESSURES)
+    unit = scaled_unit(float(solution.traction.max()), "Pa")
     values = view.cut(solution.traction) / unit.size
     image = _image(axes, values, view, "cividis", vmin=0.0)
     _bar(axes, image, f"shear r ({unit.name})")

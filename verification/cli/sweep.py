@@ -9,15 +9,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.options import Options, option, output_file, output_text
-from verification.cli.output import (
-    PICTURES,
-    check_outputs,
-    check_suffix,
-    check_workers,
-    emit,
-    refusal,
-)
+from verification.cli.options import Options, option, output_file, output_text, picture
+from verification.cli.output import check_outputs, check_workers, emit, refusal
 from verification.output.files import StatusLine
 from verification.output.text_table import columns, wrapped
 
@@ -65,7 +58,7 @@ OPTIONS: Options = {
     "--scheduler": option("use the workers of this dask.distributed scheduler instead", metavar="ADDRESS"),
     "--csv": option("export the study's rows as CSV ('-': to stdout)", metavar="FILE", type=output_text),
     "--parquet": option("export the study's rows as Parquet", metavar="FILE", type=output_file),
-    "--plot": option("curves as a picture (.png, .svg or .pdf)", metavar="FILE", type=output_file),
+    "--plot": option("curves as a picture (.png, .svg or .pdf)", metavar="FILE", type=picture),
     "--x": option("with --plot: the column along x (default: what varies)", metavar="COLUMN"),
     "--y": option(
         "with --plot: the column along y (default friction_coefficient_corrected)", metavar="COLUMN"
@@ -147,7 +140,6 @@ def check_plot(options: argparse.Namespace, study: Study) -> None:
     """Choose the columns of the picture; refuse, before any run, what names none or has no picture."""
     from verification.sweep.run import COORDINATES, OUTCOMES
 
-    check_suffix("--plot", options.plot, PICTURES)
     given = {name: getattr(options, name) for name in ("x", "y", "by") if getattr(options, name)}
     if options.plot is None:
         for name, value in given.items():
