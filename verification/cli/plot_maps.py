@@ -271,7 +271,7 @@ def _bar(axes: Axes, image: Any, title: str, extend: str = "neither") -> None:
 
 def _arrow(axes: Axes, direction: float) -> None:
     """Draw the direction of sliding above the map's right corner."""
-    above = {"xycoords": "axes fraction", "textcoords": "offset points", "va": "center"}
+    above: Any = {"xycoords": "axes fraction", "textcoords": "offset points", "va": "center"}
     turned = math.degrees(direction)
     axes.annotate("→", (1.0, 1.0), (-9.0, 8.0), ha="center", rotation=turned, fontsize=14, **above)
     axes.annotate("sliding", (1.0, 1.0), (-22.0, 8.0), ha="right", fontsize=7, **above)

@@ -172,7 +172,7 @@ def _export(options: argparse.Namespace, done: Sweep, store: Path, failed: list[
     from verification.sweep import export
 
     skipped = len(failed) - len(done.failures) if failed else 0
-    table, rows = _table(done, store, skipped), [*done.table(), *failed]
+    table, rows = _table(done, store, skipped), [*done.rows, *failed]
     if options.csv == Path("-"):
         if done.failures or done.unconverged:
             print(table, file=sys.stderr)

@@ -25,7 +25,6 @@ UNITS: dict[str, str] = {
 """Units of the columns; those of an error or a cycle are its number's, all others have none."""
 KEY_UNITS = {name: unit for texts in (MATERIAL, *SURFACES.values()) for name, (unit, _) in texts.items()}
 """Units of numbers varied by their full names, by the last part of the name."""
-EXPORTED = (*COLUMNS, "seconds")
 
 
 def unit_of(name: str) -> str:
@@ -72,7 +71,7 @@ def named(row: Row) -> Row:
 def _with_own_columns(rows: Sequence[Row]) -> tuple[list[Row], list[str]]:
     """Return the rows, and names of their columns: after all others, what the study varies by full names."""
     own = dict.fromkeys(name for row in rows for name in named(row))
-    return [row | named(row) for row in rows], [*EXPORTED, *own]
+    return [row | named(row) for row in rows], [*COLUMNS, *own]
 
 
 def to_csv(rows: Sequence[Row]) -> str:
