@@ -126,14 +126,15 @@ def test_rows_of_a_sweep(tmp_path: Path) -> None:
     """Every column a value of its own: one that stands in another's place is seen."""
     coordinates: dict[str, float | str] = {name: 2.5 + k for k, name in enumerate(COORDINATES)}
     coordinates |= {"parameters": '{"lower.material.nu": 0.25}'}
-    outcomes = {name: -1.0 / (3 + k) for k, name in enumerate(OUTCOMES)} | {"status": "stagnated"}
+    outcomes = {name: -1.0 / (3 + k) for k, name in enumerate(OUTCOMES)}
+    outcomes |= {"status": "stagnated", "seconds": 12.25}
     run = Run(coordinates, {"grid": 8, "scene": {"load": 1.5}})
     with open_store(tmp_path / "s.sqlite") as store:
-        store.add(run, outcomes, 12.25)
+        store.add(run, outcomes)
     with open_store(tmp_path / "s.sqlite") as store:
-        ((row, seconds),) = store.finished([run])
+        (row,) = store.finished([run])
     expected: dict[str, object] = {"key": run.key, **coordinates, **outcomes}
-    assert (row, seconds) == (expected, 12.25)
+    assert row == expected
     (read,) = csv.DictReader(io.StringIO(to_csv([row])))
     for name, value in (expected | {"lower.material.nu": 0.25}).items():
         assert read[header(name)] == str(value), name

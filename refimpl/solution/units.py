@@ -37,10 +37,19 @@ def printed_unit(value: float, unit: str) -> Unit:
     >>> printed_unit(0.31, "1")
     Unit(name='', size=1.0)
     """
-    usual, *others = _SCALES.get(unit, (Unit("" if unit == "1" else unit, 1.0),))
-    size = abs(value)
+    if unit not in _SCALES:
+        return Unit("" if unit == "1" else unit, 1.0)
+    usual, size = _SCALES[unit][0], abs(value)
     if not 0 < size < math.inf or _USUAL[0] <= size / usual.size < _USUAL[1]:
         return usual
-    fitting = [other for other in others if other.size <= size]
-    smallest = min(others, default=usual, key=lambda other: other.size)
-    return max(fitting, default=smallest, key=lambda other: other.size)
+    return unit_at_scale(value, unit)
+
+
+def unit_at_scale(value: float, unit: str) -> Unit:
+    """Return the largest unit of which the value has at least one, or the smallest unit.
+
+    >>> unit_at_scale(4.1e-4, "m").name, unit_at_scale(0.8e9, "Pa").name, unit_at_scale(0.0, "m").name
+    ('um', 'MPa', 'pm')
+    """
+    rising = sorted(_SCALES[unit], key=lambda other: other.size)
+    return [rising[0], *(other for other in rising if other.size * (1 - 1e-9) <= abs(value))][-1]

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.options import DEFAULT_GRID, Options, option, output_file
-from verification.cli.output import PICTURES, check_outputs, check_suffix, emit, files_of, refusal
+from verification.cli.options import DEFAULT_GRID, Options, option, picture
+from verification.cli.output import check_outputs, emit, files_of, refusal
 from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ ALONE = {"E": 200e9, "nu": 0.3, "tau": 0.0, "beta": 0.1}  # assumed for a surfac
 OPTIONS: Options = {
     "scene": option("a scene (.toml, or a shipped one's name), or a surface's file", metavar="SCENE|FILE"),
     "--grid": option(f"elements along the longer side ({DEFAULT_GRID})", type=int),
-    "--plot": option("map of the local coefficient error, .png or .svg", metavar="FILE", type=output_file),
+    "--plot": option("map of the local coefficient error, .png or .svg", metavar="FILE", type=picture),
 }
 SURFACE_FILE: tuple[str, str, Options] = (
     "a surface's file",
@@ -42,7 +42,6 @@ def surface(options: argparse.Namespace) -> int:
     """Solve, state the half-space's error in each number and on each element, and advise."""
     from refimpl.sensitivities.surface_verdict import surface_verdict
 
-    check_suffix("--plot", options.plot, PICTURES)
     scene, note = _posed(options)
     check_outputs([Path(options.scene), *files_of(scene)], plot=options.plot, json=options.json)
     verdict = surface_verdict(scene, options.grid)
@@ -92,14 +91,13 @@ def _posed(options: argparse.Namespace) -> tuple[Scene, str]:
 def _document(name: str, note: str, verdict: SurfaceVerdict) -> Mapping[str, object]:
     import numpy as np
 
-    local = verdict.local
     return {
         "scene": name,
         "assumed": note,
         "grid": list(verdict.solution.grid.shape),
         "share_above_2_percent": verdict.share_above,
-        "largest_local_error": float(local.max()) if np.isfinite(local).all() else None,
-        "median_local_error": float(np.median(local)) if np.isfinite(np.median(local)) else None,
+        "largest_local_error": float(verdict.local.max()),
+        "median_local_error": float(np.median(verdict.local)),
         "short_wave_share": verdict.short_waves,
         "numbers": verdict.numbers(),
         "advice": verdict.advice,

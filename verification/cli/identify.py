@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import math
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,8 +15,9 @@ from verification.cli.options import (
     names,
     option,
     output_file,
+    picture,
 )
-from verification.cli.output import PICTURES, check_outputs, check_suffix, emit, files_of
+from verification.cli.output import check_outputs, emit, files_of
 from verification.output.files import StatusLine
 from verification.output.text_table import columns, wrapped
 
@@ -43,7 +44,7 @@ OPTIONS: Options = {
     "--fit": option("fit the hardness as well", metavar="NAME,...", type=names, default=()),
     "--realisations": option("draws of random surfaces (default 1)", metavar="N", type=int, default=1),
     "--store": option("keep finished solves there, and go on", metavar="FILE.json", type=output_file),
-    "--plot": option("draw data, fit, ellipse and residuals", metavar="FILE.png", type=output_file),
+    "--plot": option("draw data, fit, ellipse and residuals", metavar="FILE.png", type=picture),
 }
 
 
@@ -54,7 +55,6 @@ def run(options: argparse.Namespace) -> int:
     from verification.cli.identify_store import SolveStore, key
     from verification.output.provenance import provenance
 
-    check_suffix("--plot", options.plot, PICTURES)
     scene, tolerances = read_scene(options.scene), read_tolerances(options.scene)
     inputs = [Path(options.scene), options.data, *files_of(scene)]
     check_outputs(inputs, store=options.store, plot=options.plot, json=options.json)
@@ -83,60 +83,35 @@ def run(options: argparse.Namespace) -> int:
 
 def document(found: Identification) -> dict[str, object]:
     """Return SI units; intervals of 95 %, shares as standard uncertainties; None for what is unbounded."""
-    proposal = found.proposal
+    intervals = {name: asdict(one) for name, one in found.values.items()}
+    dropped, further = found.fitted.dropped, None
+    if (proposal := found.proposal) is not None:
+        further = {"loads": proposal.loads, "tau": proposal.widths[0], "beta": proposal.widths[1]}
     return {
-        "tau": _interval(found.values["tau"]),
-        "beta": _interval(found.values["beta"]),
-        "fitted": {name: _interval(found.values[name]) for name in tuple(found.values)[2:]},
+        "tau": intervals.pop("tau"),
+        "beta": intervals.pop("beta"),
+        "fitted": intervals,
         "covariance": found.covariance.tolist(),
         "identified": found.is_identified,
         "method": found.method,
         "shares": {name: dict(zip(found.values, part, strict=True)) for name, part in found.shares.items()},
-        "combination": {"factor": found.factor, **_interval(found.combination)},
-        "predictions": [{"load": p.load, **_interval(p.mu)} for p in found.predictions],
-        "residuals": list(found.residuals),
-        "deleted_residuals": list(found.deleted),
+        "combination": {"factor": found.factor, **asdict(found.combination)},
+        "predictions": [{"load": p.load, **asdict(p.mu)} for p in found.predictions],
+        "residuals": found.residuals,
+        "deleted_residuals": found.deleted,
         "outliers": [
-            {
-                "row": k + 1,
-                "load": found.rows[k].load,
-                "deviation": found.deleted[k],
-                "dropped": k == found.fitted.dropped,
-            }
+            {"row": k + 1, "load": found.rows[k].load, "deviation": found.deleted[k], "dropped": k == dropped}
             for k in found.outliers
         ],
         "chi_square": found.chi_square,
         "degrees_of_freedom": found.degrees,
         "probability": found.probability,
-        "laws": [
-            {
-                "law": law.name,
-                "parameters": dict(law.parameters),
-                "chi_square": law.chi_square,
-                "aic": law.aic,
-                "bic": law.bic,
-            }
-            for law in found.laws
-        ],
-        "further_loads": None
-        if proposal is None
-        else {
-            "loads": list(proposal.loads),
-            "tau": _finite(proposal.widths[0]),
-            "beta": _finite(proposal.widths[1]),
-        },
-        "warnings": list(found.warnings),
+        "laws": [{"law": law.pop("name"), **law} for law in map(asdict, found.laws)],
+        "further_loads": further,
+        "warnings": found.warnings,
         "solves": found.solves,
         "passes": found.passes,
     }
-
-
-def _finite(number: float) -> float | None:
-    return number if math.isfinite(number) else None
-
-
-def _interval(interval: Interval) -> dict[str, float | None]:
-    return {"value": interval.value, "low": interval.low, "high": _finite(interval.high)}
 
 
 def _cells(interval: Interval, unit: float = 1.0) -> list[str]:

@@ -13,10 +13,10 @@ from verification.cli.options import (
     name_or_number,
     one_or_two_lengths,
     option,
-    output_file,
+    picture,
     three_numbers,
 )
-from verification.cli.output import PICTURES, check_outputs, check_suffix, emit, plain, refusal
+from verification.cli.output import check_outputs, emit, refusal
 from verification.output.files import StatusLine
 from verification.output.text_table import columns, wrapped
 
@@ -30,7 +30,6 @@ EPILOG = """examples:
 
 --fit prints a surface for a scene file, with standard deviations; another seed is another specimen.
 """
-SCALES = ((1.0, "m"), (1e-3, "mm"), (1e-6, "um"), (1e-9, "nm"), (0.0, "pm"))
 KEYS = (
     "unit", "pixel_size", "channel", "level", "outliers", "scan_lines", "low_pass", "high_pass", "centre",
 )  # fmt: skip
@@ -57,7 +56,7 @@ OPTIONS: Options = {
         type=three_numbers,
     ),
     "--fit": option("fit a random surface, print it as TOML", choices=("gaussian", "self-affine")),
-    "--plot": option("map, autocorrelation, spectrum as PNG", metavar="FILE", type=output_file),
+    "--plot": option("map, autocorrelation, spectrum as PNG", metavar="FILE", type=picture),
 }
 
 
@@ -65,7 +64,6 @@ def run(options: argparse.Namespace) -> int:
     """Inspect the file."""
     from refimpl import inspect_surface
 
-    check_suffix("--plot", options.plot, PICTURES)
     check_outputs([Path(options.file)], plot=options.plot, json=options.json)
     keys = {name: value for name in KEYS if (value := getattr(options, name)) is not None}
     with StatusLine() as line:
@@ -89,7 +87,7 @@ def run(options: argparse.Namespace) -> int:
             from verification.cli.plot_surface import draw_inspection
 
             draw_inspection(found, options.plot)
-    emit(plain(document), options.json, text)
+    emit(document, options.json, text)
     return 0
 
 
@@ -148,8 +146,10 @@ def _shown(value: float, unit: str, deviation: float | None = None) -> str:
 
 
 def _length(value: float) -> str:
-    factor, unit = next(pair for pair in SCALES if abs(value) >= pair[0])
-    return f"{value / (factor or 1e-12):.4g} {unit}"
+    from refimpl.solution.units import unit_at_scale
+
+    unit = unit_at_scale(value, "m")
+    return f"{value / unit.size:.4g} {unit.name}"
 
 
 def _both(pair: list[float]) -> str:

@@ -14,6 +14,7 @@ import argparse
 import math
 import os
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias, TypeVar
 
@@ -53,7 +54,7 @@ def option(help: str, **keywords: Any) -> Mapping[str, Any]:
     return {"help": help, **keywords}
 
 
-def output_file(text: str) -> Path:
+def output_file(text: str, suffixes: Sequence[str] = ()) -> Path:
     """Parse the name of a file to write, and refuse it where it could not be written in the end."""
     path = Path(text)
     if not text:  # it would be the working directory
@@ -64,6 +65,10 @@ def output_file(text: str) -> Path:
 
     if is_device(path.name) and path.suffix:
         raise argparse.ArgumentTypeError(f"{text!r} is a device on Windows, not a file")
+    if suffixes and path.suffix not in suffixes:
+        *others, last = suffixes
+        ends = f"{', '.join(others)} or {last}" if others else last
+        raise argparse.ArgumentTypeError(f"expected a file name that ends in {ends}, not {text!r}")
     if os.path.isdir(path):  # no error for long names
         raise argparse.ArgumentTypeError(f"{text!r} is a directory, not a file")
     try:
@@ -71,6 +76,15 @@ def output_file(text: str) -> Path:
     except OSError as refused:
         raise argparse.ArgumentTypeError(f"cannot write {text!r}: {refused.strerror}") from refused
     return path
+
+
+def file_of(*suffixes: str) -> Callable[[str], Path]:
+    """Return the type of a file to write whose name ends in one of the suffixes."""
+    return partial(output_file, suffixes=suffixes)
+
+
+picture = file_of(".png", ".svg", ".pdf")
+"""A picture to write."""
 
 
 def output_text(text: str) -> Path:

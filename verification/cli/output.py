@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from refimpl import InputError, Scene
     from verification.framework.case import Result
 
-PICTURES = (".png", ".svg", ".pdf")
 Selected = TypeVar("Selected")
 
 
@@ -55,14 +54,6 @@ def select_or_refuse(only: Sequence[str], select: Callable[[], Selected]) -> Sel
         raise refusal("--only", only, f"the id of a case ({nothing}; see --list)") from nothing
 
 
-def check_suffix(option: str, path: Path | None, suffixes: Sequence[str]) -> None:
-    """Raise InputError, before any work, for a file whose name ends in none of the suffixes."""
-    if path is not None and path.suffix not in suffixes:
-        *others, last = suffixes
-        ends = f"{', '.join(others)} or {last}" if others else last
-        raise refusal(option, str(path), f"a file name that ends in {ends}")
-
-
 def check_workers(option: str, count: int) -> None:
     """Raise InputError unless so many worker processes can be started."""
     from refimpl.errors import require_number
@@ -86,7 +77,8 @@ def files_of(scene: Scene) -> list[Path]:
 
 
 def emit(document: object, path: Path | None, table: str) -> None:
-    """Write the document where asked and show the table; '-' prints the document in the table's place."""
+    """Write the document, `plain`, where asked and show the table; '-' prints it in the table's place."""
+    document = plain(document)
     if path == Path("-"):
         text = to_json(document)
         try:

@@ -28,13 +28,12 @@ if TYPE_CHECKING:
     from verification.exact.hertz import Sphere as HertzSphere
 
 WIDTH = 7.1  # inches, 180 mm: the width of a page's text
-LEFT, RIGHT = 0.6, 4.2  # inches, left edges of both columns
 MAP, LOWEST_MAP, GRAPH = 2.35, 1.0, 1.05  # inches: width of all panels, least height of a map, of a graph
 KEY = 2.15  # inches, least height of the numbers and the legend
 _BINS = 40  # bins of a histogram
 _SYMBOLS = {"mu": "μ", "p_max": "$p_{max}$", "delta": "approach δ"}
 _GREY = "0.45"
-BELOW, ABOVE = 0.42, 0.25  # inches, for an axis with its label, and for a title
+ROOM = 2.7  # inches, for axes with their labels, and for titles
 
 
 def draw(solution: Solution, scene: Scene, path: Path) -> None:
@@ -76,23 +75,15 @@ def hertz_of(scene: Scene, load: float) -> HertzSphere | None:
 
 
 def _panels(height: float) -> tuple[Figure, dict[str, Axes]]:
-    """Return a figure and its panels by name: two columns, from below, maps of this height (inches)."""
+    """Return a figure and its panels by name: two columns, maps of this height (inches) above."""
     import matplotlib.pyplot as plt
 
-    rows = (  # names, height of the row, height of its left panel, which is at the row's top
-        ("pressures", "gaps", GRAPH, GRAPH),
-        ("along x", "along y", GRAPH, GRAPH),
-        ("gap", "key", max(height, KEY), height),
-        ("pressure", "shear", height, height),
+    return plt.subplot_mosaic(
+        [["pressure", "shear"], ["gap", "key"], ["along x", "along y"], ["pressures", "gaps"]],
+        height_ratios=(height, max(height, KEY), GRAPH, GRAPH),
+        figsize=(WIDTH, height + max(height, KEY) + 2 * GRAPH + ROOM),
+        layout="constrained",
     )
-    total = sum(row[2] + BELOW + ABOVE for row in rows)
-    figure, panels, bottom = plt.figure(figsize=(WIDTH, total)), {}, BELOW
-    for first, second, tall, own in rows:
-        for name, left, low, high in ((first, LEFT, tall - own, own), (second, RIGHT, 0.0, tall)):
-            place = left / WIDTH, (bottom + low) / total, MAP / WIDTH, high / total
-            panels[name] = figure.add_axes(place, label=name)
-        bottom += tall + ABOVE + BELOW
-    return figure, panels
 
 
 def numbers_of(solution: Solution) -> list[str]:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from verification.cli.plot_style import BLACK, BLUE, LENGTHS, ORANGE, PINK, PRESSURES, Unit, unit_at_scale
+from verification.cli.plot_style import BLACK, BLUE, ORANGE, PINK, scaled_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from refimpl import Solution
     from refimpl.grid import Array, Mask
+    from refimpl.solution.units import Unit
 
 MARGIN = 0.12  # share of the contact's longer side, on each side of it
 LEAST = 8  # elements along each side of the window
@@ -97,9 +98,9 @@ def view_of(solution: Solution) -> View:
         peak=peak_of(solution.pressure),
         spacings=grid.spacings,
         whole=whole,
-        length=unit_at_scale(max(_sides(first, last, grid.spacings)), LENGTHS),
-        pressure=unit_at_scale(solution.max_pressure, PRESSURES),
-        gap=unit_at_scale(float(np.percentile(gap, 99)), LENGTHS),
+        length=scaled_unit(max(_sides(first, last, grid.spacings)), "m"),
+        pressure=scaled_unit(solution.max_pressure, "Pa"),
+        gap=scaled_unit(float(np.percentile(gap, 99)), "m"),
     )
 
 
@@ -168,7 +169,7 @@ def pressure_map(axes: Axes, solution: Solution, view: View) -> None:
 
 def shear_map(axes: Axes, solution: Solution, view: View) -> None:
     """Draw the local friction in contact; elements without adhesive shear in a colour of their own."""
-    unit = unit_at_scale(float(solution.traction.max()), PRESSURES)
+    unit = scaled_unit(float(solution.traction.max()), "Pa")
     values = view.cut(solution.traction) / unit.size
     image = _image(axes, values, view, "cividis", vmin=0.0)
     _bar(axes, image, f"shear r ({unit.name})")
@@ -196,19 +197,13 @@ def domain_map(axes: Axes, solution: Solution, view: View) -> None:
     """Draw the whole domain: the contact, and the window of the other maps."""
     from matplotlib.patches import Rectangle
 
-    contact, step = pooled(solution.contact, most=160)
-    unit = view.length.size
-    width, height = (length / unit for length in solution.grid.lengths)
-    dx, dy = (step * d / unit for d in solution.grid.spacings)
-    reach = (0, contact.shape[0] * dx, 0, contact.shape[1] * dy)
-    axes.imshow(_coloured(contact, BLUE), origin="lower", extent=reach, interpolation="nearest")
-    origin = view.origin[0] / unit, view.origin[1] / unit
-    frame = Rectangle(origin, view.size[0] / unit, view.size[1] / unit, fill=False, ec=BLACK, lw=0.8)
-    axes.add_patch(frame)
-    axes.set(xlim=(0, width), ylim=(0, height), xticks=[0, width], yticks=[0, height])
-    axes.set_xticklabels(["0", f"{width:.4g}"])
-    axes.set_yticklabels(["0", f"{height:.4g}"])
-    axes.set_aspect("equal" if max(width, height) <= 4 * min(width, height) else "auto")
+    whole = replace(view, first=(0, 0), last=solution.grid.shape)
+    _overlay(axes, solution.contact, whole, BLUE, most=160)
+    left, right, bottom, top = view.extent
+    axes.add_patch(Rectangle((left, bottom), right - left, top - bottom, fill=False, ec=BLACK, lw=0.8))
+    _, width, _, height = whole.extent
+    axes.set_xticks([0, width], ["0", f"{width:.4g}"])
+    axes.set_yticks([0, height], ["0", f"{height:.4g}"])
     axes.set_title(f"whole domain ({view.length.name})")
 
 
@@ -249,9 +244,12 @@ def _image(
     return image
 
 
-def _overlay(axes: Axes, where: Mask, view: View, colour: str) -> None:
-    blocks, step = pooled(where)
-    _show(axes, _coloured(blocks, colour), step, view)
+def _overlay(axes: Axes, where: Mask, view: View, colour: str, most: int = MOST_CELLS) -> None:
+    import numpy as np
+    from matplotlib.colors import ListedColormap
+
+    blocks, step = pooled(where, most=most)
+    _show(axes, np.ma.masked_equal(blocks.T, 0), step, view, cmap=ListedColormap([colour]))
 
 
 def _show(axes: Axes, picture: NDArray[Any], step: int, view: View, **options: Any) -> Any:
@@ -271,27 +269,9 @@ def _bar(axes: Axes, image: Any, title: str, extend: str = "neither") -> None:
     axes.set_title(title, loc="left")
 
 
-def _coloured(where: Mask, colour: str) -> Array:
-    import numpy as np
-    from matplotlib.colors import to_rgb
-
-    image = np.zeros((*where.T.shape, 4))
-    image[where.T] = (*to_rgb(colour), 1.0)
-    return image
-
-
 def _arrow(axes: Axes, direction: float) -> None:
-    from matplotlib.text import OffsetFrom
-
-    half = 9.0  # points, of the arrow's length
-    dx, dy = half * math.cos(direction), half * math.sin(direction)
-    middle = -half, 8.0  # points, from the map's upper right corner
-    corner = OffsetFrom(axes, (1.0, 1.0), unit="points")
-    axes.annotate(
-        "", (middle[0] + dx, middle[1] + dy), (middle[0] - dx, middle[1] - dy), xycoords=corner,
-        textcoords=corner, annotation_clip=False, arrowprops={"arrowstyle": "->", "lw": 0.9},
-    )  # fmt: skip
-    axes.annotate(
-        "sliding", (1.0, 1.0), (-2.5 * half, 8.0), xycoords="axes fraction",
-        textcoords="offset points", ha="right", va="center", fontsize=7,
-    )  # fmt: skip
+    """Draw the direction of sliding above the map's right corner."""
+    above: Any = {"xycoords": "axes fraction", "textcoords": "offset points", "va": "center"}
+    turned = math.degrees(direction)
+    axes.annotate("→", (1.0, 1.0), (-9.0, 8.0), ha="center", rotation=turned, fontsize=14, **above)
+    axes.annotate("sliding", (1.0, 1.0), (-22.0, 8.0), ha="right", fontsize=7, **above)

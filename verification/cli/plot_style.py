@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from refimpl.solution.units import Unit
 
 # Okabe and Ito 2008, safe for colour-blind readers
 BLUE, ORANGE, GREEN, PINK, BLACK = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000"
@@ -25,26 +27,16 @@ PRINT: Any = {  # sizes in points: at full page width (180 mm) no letter is smal
 DPI = 200
 
 
-class Unit(NamedTuple):
-    """A unit for people: its name, and how many SI units it is."""
+def scaled_unit(value: float, unit: str) -> Unit:
+    """Return the unit of an axis, at the scale of a value in this SI unit.
 
-    name: str
-    size: float
-
-
-LENGTHS = (Unit("nm", 1e-9), Unit("µm", 1e-6), Unit("mm", 1e-3), Unit("m", 1.0))
-PRESSURES = (Unit("Pa", 1.0), Unit("kPa", 1e3), Unit("MPa", 1e6), Unit("GPa", 1e9))
-
-
-def unit_at_scale(value: float, units: tuple[Unit, ...]) -> Unit:
-    """Return the largest unit of which the value has at least one, or the smallest unit.
-
-    >>> unit_at_scale(4.1e-4, LENGTHS).name, unit_at_scale(0.8e9, PRESSURES).name
-    ('µm', 'MPa')
-    >>> unit_at_scale(0.0, LENGTHS).name
-    'nm'
+    >>> scaled_unit(4.1e-4, "m").name
+    'µm'
     """
-    return next((unit for unit in reversed(units) if abs(value) >= unit.size * (1 - 1e-9)), units[0])
+    from refimpl.solution.units import unit_at_scale
+
+    found = unit_at_scale(value, unit)
+    return found._replace(name=found.name.replace("u", "µ"))
 
 
 @contextmanager

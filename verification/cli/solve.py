@@ -13,21 +13,15 @@ from verification.cli.options import (
     DEFAULT_GRID,
     Options,
     elements,
+    file_of,
     gigabytes,
     lengths,
     on_or_off,
     option,
     output_file,
+    picture,
 )
-from verification.cli.output import (
-    PICTURES,
-    check_outputs,
-    check_suffix,
-    emit,
-    files_of,
-    plain,
-    refusal,
-)
+from verification.cli.output import check_outputs, emit, files_of, refusal
 from verification.cli.solve_table import document, not_usable, show_finished, table
 from verification.output.files import StatusLine, is_stream
 from verification.output.text_table import wrapped
@@ -53,8 +47,7 @@ usable (its bar exceeds half of it, that of Q half of the tangential force); 2 b
 Shipped scenes: hertz, metal-polymer, rough-planes, table1-rough, table1-smooth.
 """
 
-SUFFIXES = {"plot": PICTURES, "vtk": (".vtk", ".vtu"), "npz": (".npz",), "netcdf": (".nc",)}
-FILES = (*SUFFIXES, "patches")
+FILES = ("plot", "vtk", "npz", "netcdf", "patches")
 # Options of refimpl, which --help does not wait for.
 METHODS = ("fft", "dense", "paper")
 ACCURATE = (
@@ -119,10 +112,10 @@ OPTIONS: Options = {
         action="store_true",
     ),
     "--strict": option("exit status 1 too where a number of the table is not usable", action="store_true"),
-    "--plot": option("maps and profiles (.png, .svg or .pdf)", metavar="FILE", type=output_file),
-    "--vtk": option("both deformed surfaces, for ParaView", metavar="FILE.vtu", type=output_file),
-    "--npz": option("fields with coordinates and units, for numpy", metavar="FILE.npz", type=output_file),
-    "--netcdf": option("the same as NetCDF, for xarray", metavar="FILE.nc", type=output_file),
+    "--plot": option("maps and profiles (.png, .svg or .pdf)", metavar="FILE", type=picture),
+    "--vtk": option("both deformed surfaces, for ParaView", metavar="FILE.vtu", type=file_of(".vtk", ".vtu")),
+    "--npz": option("fields with coordinates and units, for numpy", metavar="FILE.npz", type=file_of(".npz")),
+    "--netcdf": option("the same as NetCDF, for xarray", metavar="FILE.nc", type=file_of(".nc")),
     "--patches": option("table of contact patches as CSV", metavar="FILE.csv", type=output_file),
 }
 
@@ -163,8 +156,6 @@ def _read_scene(options: argparse.Namespace) -> Scene:
     from verification.cli.arrays import require_netcdf
 
     _refuse_ignored(options)
-    for name, suffixes in SUFFIXES.items():
-        check_suffix(f"--{name}", getattr(options, name), suffixes)
     require_netcdf(options.netcdf)
     scene = refimpl.read_scene(options.scene)
     if options.size is not None:
@@ -230,7 +221,7 @@ def _with_budget(
     with StatusLine() as line:
         line.show("uncertainty budget: what every parameter changes")
         budgets = budget_of(scene, solution, tolerances)
-    found["budget"] = plain(budget.document(budgets))
+    found["budget"] = budget.document(budgets)
     return f"\n{budget.table(budgets)}"
 
 

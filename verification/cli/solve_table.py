@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from verification.cli.output import plain
 from verification.output.text_table import columns, wrapped
 
 if TYPE_CHECKING:
@@ -38,8 +37,8 @@ def document(solution: Solution, scene: str) -> dict[str, object]:
     """Return the JSON of a solve: SI units, names of `refimpl.Solution`; arrays are for the VTK file."""
     from verification.output.provenance import provenance
 
-    summary = {key: plain(value) for key, value in solution.summary().items()}
-    return {"scene": scene, **summary, "not_usable": not_usable(solution), "provenance": provenance()}
+    found = {"scene": scene, **solution.summary()}
+    return found | {"not_usable": not_usable(solution), "provenance": provenance()}
 
 
 def table(solution: Solution, scene: str, waited: float | None = None) -> str:

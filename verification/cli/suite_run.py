@@ -13,8 +13,8 @@ from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 from verification.cli import suite_report, suite_table
-from verification.cli.options import Options, declare, option, output_file
-from verification.cli.output import check_suffix, emit, refusal, select_or_refuse
+from verification.cli.options import Options, declare, file_of, option
+from verification.cli.output import emit, refusal, select_or_refuse
 from verification.cli.suite_report import Judged
 from verification.output.text_table import columns
 
@@ -60,7 +60,7 @@ OPTIONS: Options = {
     "--table": option(
         "write a table of the run beside the published codes: FILE ends in .csv, .tex or .md",
         metavar="FILE",
-        type=output_file,
+        type=file_of(".csv", ".tex", ".md"),
     ),
 }
 """Options that mean nothing without a solver."""
@@ -134,7 +134,6 @@ def run(options: argparse.Namespace) -> int:
     if options.discretisation == "other":
         among = convergence.CASES
     checks = select_or_refuse(options.only, lambda: suite.select(options.only, among))
-    check_suffix("--table", options.table, suite_table.SUFFIXES)
     if options.list:
         listed = [{"id": c.id, "title": c.title, "claim": c.description} for c in checks]
         emit(listed, options.json, columns([[c.id, c.title] for c in checks], indent=""))

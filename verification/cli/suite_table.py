@@ -15,7 +15,6 @@ from verification.output.text_table import csv_text, markdown_row
 if TYPE_CHECKING:
     from verification.framework.case import Result
 
-SUFFIXES = (".csv", ".tex", ".md")
 PUBLISHED = ROOT / "reports" / "results" / "cross_code.json.gz"
 COLUMNS = ("code", "version", "checksum", "suite", "case", "status", "error", "tolerance", "metric")
 _SPECIAL = {c: f"\\{c}" for c in "&%$#_{}"} | {

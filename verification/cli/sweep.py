@@ -9,16 +9,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verification.cli.options import Options, option, output_file, output_text
-from verification.cli.output import (
-    PICTURES,
-    check_outputs,
-    check_suffix,
-    check_workers,
-    emit,
-    plain,
-    refusal,
-)
+from verification.cli.options import Options, option, output_file, output_text, picture
+from verification.cli.output import check_outputs, check_workers, emit, refusal
 from verification.output.files import StatusLine
 from verification.output.text_table import columns, wrapped
 
@@ -66,7 +58,7 @@ OPTIONS: Options = {
     "--scheduler": option("use the workers of this dask.distributed scheduler instead", metavar="ADDRESS"),
     "--csv": option("export the study's rows as CSV ('-': to stdout)", metavar="FILE", type=output_text),
     "--parquet": option("export the study's rows as Parquet", metavar="FILE", type=output_file),
-    "--plot": option("curves as a picture (.png, .svg or .pdf)", metavar="FILE", type=output_file),
+    "--plot": option("curves as a picture (.png, .svg or .pdf)", metavar="FILE", type=picture),
     "--x": option("with --plot: the column along x (default: what varies)", metavar="COLUMN"),
     "--y": option(
         "with --plot: the column along y (default friction_coefficient_corrected)", metavar="COLUMN"
@@ -148,7 +140,6 @@ def check_plot(options: argparse.Namespace, study: Study) -> None:
     """Choose the columns of the picture; refuse, before any run, what names none or has no picture."""
     from verification.sweep.run import COORDINATES, OUTCOMES
 
-    check_suffix("--plot", options.plot, PICTURES)
     given = {name: getattr(options, name) for name in ("x", "y", "by") if getattr(options, name)}
     if options.plot is None:
         for name, value in given.items():
@@ -181,7 +172,7 @@ def _export(options: argparse.Namespace, done: Sweep, store: Path, failed: list[
     from verification.sweep import export
 
     skipped = len(failed) - len(done.failures) if failed else 0
-    table, rows = _table(done, store, skipped), [*done.table(), *failed]
+    table, rows = _table(done, store, skipped), [*done.rows, *failed]
     if options.csv == Path("-"):
         if done.failures or done.unconverged:
             print(table, file=sys.stderr)
@@ -200,7 +191,7 @@ def _export(options: argparse.Namespace, done: Sweep, store: Path, failed: list[
         "store": str(store),
         **{name: getattr(done, name) for name in ("found", "finished", "failures", "statuses")},
         "seconds": round(done.seconds, 3),
-        "rows": plain(rows),
+        "rows": rows,
         "provenance": provenance(),
     }
     emit(document, options.json, table)

@@ -8,9 +8,10 @@ import multiprocessing
 import queue
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import ExitStack
 from multiprocessing.process import BaseProcess
 
 from refimpl.operating_system import interrupts_blocked
@@ -48,42 +49,32 @@ def run_all(cases: Sequence[Case], jobs: int, tick: Callable[[Result], None]) ->
 
     A worker takes the cases of a whole module, in their order, since those may share a cached solution.
     """
-    lines: queue.SimpleQueue[list[Case]] = queue.SimpleQueue()
     before = set(multiprocessing.active_children())
+    modules = [list(module) for _, module in itertools.groupby(cases, key=lambda c: c.module)]
+    idle: queue.SimpleQueue[Worker] = queue.SimpleQueue()
     stopped = threading.Event()
-    for _, line in itertools.groupby(cases, key=lambda c: c.module):
-        lines.put(list(line))
 
-    def work(_: int) -> list[Result]:
-        worker, results = Worker(), []
+    def work(module: list[Case]) -> list[Result]:
+        worker, results = idle.get(), []
         try:
-            for case in _drain(lines, stopped):
+            for case in itertools.takewhile(lambda _: not stopped.is_set(), module):
                 results.append(worker.run(case))
                 tick(results[-1])
         finally:
-            worker.close()
+            idle.put(worker)
         return results
 
-    with one_thread(), ThreadPoolExecutor(jobs) as threads:
-        try:
-            found = {r.id: r for results in threads.map(work, range(jobs)) for r in results}
-        except BaseException:
-            stopped.set()
-            kill_workers(before)
-            raise
-    return [found[c.id] for c in cases]
-
-
-def _drain(lines: queue.SimpleQueue[list[Case]], stopped: threading.Event) -> Iterator[Case]:
-    while True:
-        try:
-            line = lines.get_nowait()
-        except queue.Empty:
-            return
-        for case in line:
-            if stopped.is_set():
-                return
-            yield case
+    with ExitStack() as ending:
+        for worker in (Worker() for _ in range(jobs)):
+            ending.callback(worker.close)
+            idle.put(worker)
+        with one_thread(), ThreadPoolExecutor(jobs) as threads:
+            try:
+                return [result for results in threads.map(work, modules) for result in results]
+            except BaseException:
+                stopped.set()
+                kill_workers(before)
+                raise
 
 
 def kill_workers(others: set[BaseProcess]) -> None:

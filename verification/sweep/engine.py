@@ -54,14 +54,13 @@ class Sweep:
     """Result of a sweep: runs found in the store, finished now, and failed (key to message).
 
     ``rows`` are those of the study in its order, all of them exactly when nothing failed, and one for points
-    that are the same run; ``solve_seconds`` is the processor time that each took, whenever that was.
+    that are the same run.
     """
 
     found: int
     finished: int
     failures: dict[str, str]
     rows: list[Row]
-    solve_seconds: list[float]
     seconds: float
 
     @property
@@ -74,15 +73,11 @@ class Sweep:
         """The rows whose numbers are no solution; they are kept: solved again, they would end the same."""
         return [row for row in self.rows if row["status"] not in CERTIFIED]
 
-    def table(self) -> list[Row]:
-        """Return the rows with the processor seconds that each took."""
-        return [row | {"seconds": took} for row, took in zip(self.rows, self.solve_seconds, strict=True)]
-
     def to_dataframe(self) -> Any:
         """Return a `pandas.DataFrame` by full names, ``attrs["units"]`` beside. InputError without pandas."""
         from verification.sweep.export import to_dataframe
 
-        return to_dataframe(self.table())
+        return to_dataframe(self.rows)
 
 
 class WorkersLost(RuntimeError):
@@ -123,17 +118,16 @@ def sweep(
             for done in as_completed(waiting):
                 run, failure = waiting.pop(done), _failure(done)
                 if failure is None:
-                    kept.add(run, *done.result())
+                    kept.add(run, done.result())
                 else:
                     failures[run.key] = f"{type(failure).__name__}: {failure}"
                 meter.count(run, failed=failure is not None)
-        finished = list(kept.finished(runs))
+        rows = list(kept.finished(runs))
     found = len(runs) - len(missing)
-    rows, spent = [row for row, _ in finished], [took for _, took in finished]
-    return Sweep(found, len(missing) - len(failures), failures, rows, spent, time.perf_counter() - started)
+    return Sweep(found, len(missing) - len(failures), failures, rows, time.perf_counter() - started)
 
 
-def _failure(done: Future[tuple[Row, float]]) -> BaseException | None:
+def _failure(done: Future[Row]) -> BaseException | None:
     """Return what the run raised; raises WorkersLost where it is not the run's doing."""
     try:
         failure = done.exception()

@@ -14,17 +14,17 @@ from verification.output.files import replacing, write_text
 from verification.output.text_table import csv_text
 from verification.sweep.run import Row
 from verification.sweep.store import COLUMNS
+from verification.sweep.study_file import TEXTS
 
-UNITS = {
+UNITS: dict[str, str] = {
     **{name: unit for name, (unit, _) in (SCENE | FRICTION).items()},
     **{name: "" if quantity.unit == "1" else quantity.unit for name, quantity in QUANTITIES.items()},
-    **dict.fromkeys(("upper_rms", "lower_rms", "correlation_length"), "m"),
+    **{name: unit for name, (unit, _) in TEXTS["vary"].items()},
     "seconds": "s",
 }
 """Units of the columns; those of an error or a cycle are its number's, all others have none."""
 KEY_UNITS = {name: unit for texts in (MATERIAL, *SURFACES.values()) for name, (unit, _) in texts.items()}
 """Units of numbers varied by their full names, by the last part of the name."""
-EXPORTED = (*COLUMNS, "seconds")
 
 
 def unit_of(name: str) -> str:
@@ -71,7 +71,7 @@ def named(row: Row) -> Row:
 def _with_own_columns(rows: Sequence[Row]) -> tuple[list[Row], list[str]]:
     """Return the rows, and names of their columns: after all others, what the study varies by full names."""
     own = dict.fromkeys(name for row in rows for name in named(row))
-    return [row | named(row) for row in rows], [*EXPORTED, *own]
+    return [row | named(row) for row in rows], [*COLUMNS, *own]
 
 
 def to_csv(rows: Sequence[Row]) -> str:

@@ -1,8 +1,7 @@
-"""Every key of a study's file, in the form of `refimpl.scene.keys`."""
+"""Every key of a study's file, in the form of `refimpl.scene.keys`; the texts are in ``study_keys.toml``."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import get_type_hints
@@ -23,57 +22,13 @@ from refimpl.scene.keys import (
 from refimpl.scene.parameters import differentiable_parameters, parameters
 from refimpl.scene.scene_file import FRICTION, SCENE, scene_from_dict
 from verification.sweep.study import AXES
-from verification.sweep.study_file import KEYS, SOLVE_KEYS, study_from_dict, varied_names
+from verification.sweep.study_file import KEYS, TEXTS, study_from_dict, varied_names
 
 _BASE: Table = {"scene": "table1-rough", "vary": {"grid": [8]}, "solve": {}}
-_TEXTS: Mapping[str, tuple[str, str]] = {
-    "scene": (
-        "text",
-        "the scene that is varied: the name of a shipped one, or a file relative to that of the study",
-    ),
-    "realisations": (
-        "whole number",
-        "number of random surfaces (seeds) that are solved for each combination of values",
-    ),
-    "first_seed": (
-        "whole number",
-        "seed of the upper body in the first realisation; the lower body has the next number, and the next "
-        "realisation the next two. Not set: 1, or with a single realisation the seeds of the scene",
-    ),
-    "normalise": ("true or false", "`normalise` of all Gaussian surfaces; not set: as in the scene"),
-    "vary": ("table", "keys that vary, with their values; every combination is solved"),
-    "solve": ("table", "settings of the solver, the same for all runs"),
-}
-"""Type and meaning of each key."""
-_AXES: Mapping[str, tuple[str, str]] = {
-    "grid": ("", "elements along the longer side; not set: 256, or each map's own points, up to 512"),
-    "upper_rms": ("m", "rms height of the upper body's roughness; 0 removes that roughness"),
-    "lower_rms": ("m", "rms height of the lower body's roughness; 0 removes that roughness"),
-    "correlation_length": ("m", "`correlation_length` of all Gaussian surfaces"),
-    **{name: SCENE[name] for name in ("load", "sliding_direction", "sliding_offset")},
-    **FRICTION,
-}
-_SETTINGS: Mapping[str, str] = {
-    "method": "`fft`: the solver of `solve`; `dense`: a plain reference for small grids; `paper`: the "
-    "scheme of the paper",
-    "oblique": "`true` includes the slopes in the balance of forces, `false` neglects them; not set: the "
-    "program decides by the scene",
-    "slope_correction": "`true` corrects the displacements in Eq. (7) for sloping elements",
-    "tolerance": "largest residual of a converged result; not set: 1e-8, with the method `paper` 1e-4",
-    "accuracy": "refines the grid of each run until the error bar of `quantity` is at most this share of it; "
-    "replaces `grid`",
-    "quantity": "number that `accuracy` means; not set: `friction_coefficient_corrected`, "
-    "without friction `contact_area`",
-}
 
 
 def study_keys() -> dict[str, tuple[Key, ...]]:
     """Return the keys of the tables of a study's file: study, vary, solve."""
-    for table, texts, names in (
-        ("study", set(_TEXTS), KEYS), ("vary", set(_AXES), AXES), ("solve", set(_SETTINGS), SOLVE_KEYS),
-    ):  # fmt: skip
-        if texts != set(names):
-            raise LookupError(f"{table}: no text, or no key, for {sorted(texts ^ set(names))}")
     return {"study": _study(), "vary": _vary(), "solve": _solve()}
 
 
@@ -102,14 +57,15 @@ def _study() -> tuple[Key, ...]:
     allowed = {name: allowed_by(study_from_dict, _BASE, name, 0 if name == "scene" else "?") for name in KEYS}
     return tuple(
         Key(name, kind, "", defaults[name], allowed[name], meaning)
-        for name, (kind, meaning) in _TEXTS.items()
+        for name, (kind, meaning) in TEXTS["study"].items()
     )
 
 
 def _vary() -> tuple[Key, ...]:
+    texts = SCENE | FRICTION | TEXTS["vary"]
     return tuple(
-        Key(name, "number or list of numbers", unit, "-", _refusal("vary", name), meaning)
-        for name, (unit, meaning) in _AXES.items()
+        Key(name, "number or list of numbers", texts[name][0], "-", _refusal("vary", name), texts[name][1])
+        for name in AXES
     )
 
 
@@ -118,7 +74,7 @@ def _solve() -> tuple[Key, ...]:
     hints: dict[str, object] = get_type_hints(Options) | get_type_hints(Terms)
     return tuple(
         Key(name, type_in_words(hints[name]), "", default_of(found[name]), _refusal("solve", name), meaning)
-        for name, meaning in _SETTINGS.items()
+        for name, meaning in TEXTS["solve"].items()
     )
 
 

@@ -21,11 +21,11 @@ from typing import Any
 from refimpl.errors import InputError
 from verification.sweep.run import COORDINATES, OUTCOMES, Row, Run
 
-COLUMNS = ("key", *COORDINATES, *OUTCOMES)
+COLUMNS = ("key", *COORDINATES, *OUTCOMES, "seconds")
 _DATABASE = b"SQLite format 3\0"
 _JOURNALS = (b"", b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", bytes(8))  # begin of what a killed creation leaves
 BUSY_SECONDS = 5.0  # for another program to end its transaction
-_ALL = (*COLUMNS, "inputs", "seconds", "checksum")
+_ALL = (*COLUMNS[:-1], "inputs", "seconds", "checksum")
 _TABLE = f"""runs (
     key text primary key,
     {", ".join((*COORDINATES, *OUTCOMES))},
@@ -45,21 +45,21 @@ class Store:
         """Return the keys of the finished runs."""
         return {key for (key,) in self._connection.execute("select key from runs")}
 
-    def add(self, run: Run, row: Row, seconds: float) -> None:
+    def add(self, run: Run, row: Row) -> None:
         """Keep a finished run, unless it is there already."""
         values = [run.key, *run.coordinates.values(), *(row[name] for name in OUTCOMES)]
-        every = (*values, run.canonical, seconds)  # SQLite keeps NaN as NULL
+        every = (*values, run.canonical, row["seconds"])  # SQLite keeps NaN as NULL
         values = [None if isinstance(value, float) and math.isnan(value) else value for value in every]
         self.check_place()
         self._connection.execute(_INSERT, [*values, checksum(values)])
 
-    def finished(self, runs: Iterable[Run]) -> Iterator[tuple[Row, float]]:
-        """Yield rows of the finished ones among ``runs``, by the names of `COLUMNS`, with their seconds."""
+    def finished(self, runs: Iterable[Run]) -> Iterator[Row]:
+        """Yield rows of the finished ones among ``runs``, by the names of `COLUMNS`."""
         for run in runs:
             row = self._connection.execute(f"{_SELECT} where key = ?", (run.key,)).fetchone()
             if row is not None:
                 found = dict(zip(_ALL, row, strict=True))
-                yield {name: found[name] for name in COLUMNS}, found["seconds"]
+                yield {name: found[name] for name in COLUMNS}
 
     def check_place(self) -> None:
         """Raise InputError unless the opened file is still the one at the path."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
 from importlib import resources
@@ -19,8 +20,8 @@ from refimpl.scene.scene_file import read_toml, refuse_unknown, scene_to_dict
 from verification.sweep import posable
 from verification.sweep.study import AXES, FRICTION_AXES, MAX_RUNS, RANDOM, ROUGHNESS_AXES, Study
 
-KEYS = ("scene", "realisations", "first_seed", "normalise", "vary", "solve")
-SOLVE_KEYS = ("method", "oblique", "slope_correction", "tolerance", "accuracy", "quantity")
+TEXTS = tomllib.loads(resources.files("verification").joinpath("sweep", "study_keys.toml").read_text("utf-8"))
+KEYS, SOLVE_KEYS = tuple(TEXTS["study"]), tuple(TEXTS["solve"])
 _PLACES = {"the top of a study": KEYS, "[vary]": AXES, "[solve]": SOLVE_KEYS}
 
 

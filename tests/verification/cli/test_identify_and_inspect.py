@@ -23,6 +23,7 @@ from refimpl.identification.laws import Law
 from refimpl.measured.inspection import PARAMETERS
 from tests.verification.cli.commands import answer, refused, shown
 from verification.cli import identify, identify_store, inspect, plot_surface
+from verification.cli.output import plain
 from verification.cli.plot_curves import _fit
 
 ROWS = "load,mu,u_mu\n5,0.4103,0.0082\n11,0.3337,0.0066\n24,0.2788,0.0055\n54,0.2253,0.0046\n"
@@ -112,7 +113,7 @@ def test_a_fit_as_a_table_and_as_json() -> None:
         "0.02 tau/MPa + beta 0.24 0.23 to 0.26", "measurement 0.3 0.02 10", "8 0.33 0.3 0.25 to 0.4 +3.0",
         "5 0.36 0.4 0.35 to 0.5 -2.0", "40 - 0.5 0.45 to 0.6 -", "Coulomb 14 6 7",
     }  # fmt: skip
-    found: Any = json.loads(json.dumps(identify.document(MADE_UP), allow_nan=False))
+    found: Any = json.loads(json.dumps(plain(identify.document(MADE_UP)), allow_nan=False))
     assert (found["tau"], found["beta"]["high"]) == ({"value": 2e6, "low": 1e6, "high": 4e6}, None)
     assert found["shares"] == {"measurement": {"tau": 3e5, "beta": 0.02, "hardness": 1e7}}
     assert (found["residuals"], found["deleted_residuals"]) == ([3, -2], [4, -2.5])

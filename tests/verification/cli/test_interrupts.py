@@ -121,7 +121,7 @@ def test_a_folder_that_refuses(
     def turns(*_: object, **__: object) -> None:  # read-only once the solve has begun
         monkeypatch.setattr(files, "_temporary", refuses)
 
-    monkeypatch.setattr(solve, "check_suffix", turns)
+    monkeypatch.setattr(solve, "check_outputs", turns)
     late = run(f"solve hertz --grid 8 --json {tmp_path}/s.json")
     assert (late.status, late.err.count("\n")) == (1, 1)
     assert "Read-only" in late.err

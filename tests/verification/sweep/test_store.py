@@ -18,7 +18,7 @@ from refimpl.errors import InputError
 from tests.verification.cli.children import small
 from verification.sweep import engine, store
 from verification.sweep.export import to_csv
-from verification.sweep.run import Row, Run, execute
+from verification.sweep.run import execute
 from verification.sweep.store import COLUMNS, checksum, files_of, open_store
 
 STORES = small(4)
@@ -198,24 +198,11 @@ def test_memory_is_a_name_like_any_other(tmp_path: Path, monkeypatch: pytest.Mon
         assert engine.sweep(small(1), Path(name), workers=0).found == 1
 
 
-@pytest.fixture(scope="module")
-def finished() -> tuple[Run, Row, float]:
+def test_numbers_that_do_not_exist_are_kept_as_none(tmp_path: Path) -> None:
     (run,) = small(1).runs()
-    return run, *execute(run.inputs)
-
-
-def test_a_run_is_kept_once(tmp_path: Path, finished: tuple[Run, Row, float]) -> None:
     with open_store(tmp_path / "s.sqlite") as kept:
-        kept.add(*finished)
-        kept.add(*finished)
-        assert len(list(kept.finished([finished[0]]))) == 1
-
-
-def test_numbers_that_do_not_exist_are_kept_as_none(tmp_path: Path, finished: tuple[Run, Row, float]) -> None:
-    run, row, seconds = finished
+        kept.add(run, execute(run.inputs) | {"friction_coefficient": float("nan")})
     with open_store(tmp_path / "s.sqlite") as kept:
-        kept.add(run, row | {"friction_coefficient": float("nan")}, seconds)
-    with open_store(tmp_path / "s.sqlite") as kept:
-        ((found, _),) = kept.finished([run])
+        (found,) = kept.finished([run])
     assert found["friction_coefficient"] is None
     assert tuple(found) == COLUMNS

@@ -19,7 +19,7 @@ from verification.cli.sweep import _Line, directions_note
 from verification.sweep import engine
 from verification.sweep.curves import curves
 from verification.sweep.engine import Progress, Sweep
-from verification.sweep.run import COORDINATES, OUTCOMES
+from verification.sweep.store import COLUMNS
 from verification.sweep.study_file import read_study
 
 PATH = "lower.surface[0].path"
@@ -43,7 +43,7 @@ def test_a_document_and_a_failed_run(monkeypatch: pytest.MonkeyPatch) -> None:
     document = answer("sweep study.toml")
     assert (document["found"], document["finished"], document["failures"]) == (0, 2, {})
     assert [row["load"] for row in document["rows"]] == [1.0, 70.0]
-    failed = Sweep(2, 0, {"key": "ValueError: no luck"}, [], [], 1.0)
+    failed = Sweep(2, 0, {"key": "ValueError: no luck"}, [], 1.0)
     monkeypatch.setattr(engine, "sweep", lambda *_, **__: failed)
     assert "failed: ValueError: no luck" in shown("sweep study.toml", 1)
 
@@ -93,11 +93,11 @@ def test_rows_are_solutions_or_not_by_their_status(
     status: rf.Status, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rows = [
-        dict.fromkeys((*COORDINATES, *OUTCOMES), 1.0)
+        dict.fromkeys(COLUMNS, 1.0)
         | {"status": end, "key": key, "grid": 6, "warnings": "", "parameters": "{}"}
         for end, key in (("converged", "a"), (status.value, "b"))
     ]
-    done = Sweep(0, 2, {}, rows, [1.0, 2.0], 3.0)
+    done = Sweep(0, 2, {}, rows, 3.0)
     solved = status in (rf.Status.CONVERGED, rf.Status.CYCLED)
     assert done.unconverged == ([] if solved else rows[1:])
     expected = {"converged": 2} if status is rf.Status.CONVERGED else {"converged": 1, status.value: 1}
