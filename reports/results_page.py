@@ -41,8 +41,8 @@ You want a number that was computed here, and the file behind it. Find your ques
   [time](#time).
 - Does μ agree with experiments? The friction of a rough pair is **not validated**: no experiment was found
   that states all inputs.
-- Are the numbers of the paper reproduced? It prints {printed}, in two tables, two figures and section 8.
-  {agree} of these agree with ours within the uncertainty of the difference. On the fine mesh of
+- Are the numbers of the paper reproduced? It prints {printed}, most of them in Table 3. {agree} of
+  these agree with ours within the uncertainty of the difference. On the fine mesh of
   [Table 3](#table-3-of-the-paper) {fine} of {of_fine} agree.
 - Do the statements of the paper hold? {claims} See [claims](#claims-of-the-paper) and
   [errata](#errata-of-the-paper).

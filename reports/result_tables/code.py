@@ -37,8 +37,9 @@ def coverage(documents: Mapping[str, Any]) -> str:
     text = (
         f"Does an error bar of 95 % contain the right value? {scenes} random scenes were drawn after the "
         "constants of the error bars were fixed. Each is solved on one grid of 48 to 128 elements per side. "
-        f"The reference is its solution on 384 elements. File: {link('coverage_corrected')}.\n\n"
-        "- *Covered*: share of the error bars that contain the reference.\n"
+        "The reference is its solution on 384 elements, of rounded punches a closed form. "
+        f"File: {link('coverage_corrected')}.\n\n"
+        "- *Covered*: share of the error bars that contain the reference; an unbounded bar does.\n"
         "- *Covered at worst*: this share if every reference were wrong by its own error bound.\n"
         "- *Usable*: share of the error bars that are at most half of their number.\n"
         "- *Error bar over error*: median ratio of the error bar to the error that was found.\n\n"
@@ -114,13 +115,13 @@ def accuracy_costs(costs: Mapping[str, Any]) -> str:
             rows.append((one["class"], label, *cells))
     head = ("class of scenes", "number", *(f"{100 * demand:g} %" for demand in demands))
     text = (
-        "Which grid do you need for an accuracy? A cell has the coarsest grid whose relative error is at "
-        "most the percentage above, as are those of all finer grids. Its seconds follow in brackets. "
+        "Which grid do you need for an accuracy? A cell has the coarsest grid from which on all relative "
+        "errors stay within the percentage of its column. Its seconds follow in brackets. "
         f"Friction and slopes are included. File: {link('accuracy_costs')}.\n\n"
         "- *Error*: difference from a grid of 2048², plus the error bar of that grid.\n"
-        "- Each class has three scenes. The cell is their median if all three meet the accuracy.\n"
-        "- *> 1024² (2 of 3: 64²)*: two of three scenes meet it, on 64² at the finest. The third needs a "
-        "finer grid, or its reference is too uncertain."
+        "- Each class has three scenes. Grid and seconds are medians if all three meet the accuracy.\n"
+        "- *> 1024² (2 of 3: 64²)*: two of three scenes meet it, on 64² or coarser. The third needs a finer "
+        "grid than 1024², or its reference is too uncertain."
     )
     return section("Cost and accuracy", text, head, rows)
 
@@ -168,8 +169,8 @@ def checks(documents: Mapping[str, Any], evidence: Evidence) -> str:
     listed = ", ".join(f"{count} {status}" for count, status in counted)
     bad = [f"`{case['id']}` ({case['status']})" for case in evidence.cases if case["status"] != "pass"]
     text = (
-        f"{len(evidence.cases)} different checks: {listed}. Not passed: {', '.join(bad) or 'none'}. The "
-        "tolerance of a *recorded* check was set from its own result, so it detects changes only.\n\n"
+        f"{len(evidence.cases)} different checks: {listed}. Failed or not run: {', '.join(bad) or 'none'}. "
+        "The tolerance of a *recorded* check was set from its own result, so it detects changes only.\n\n"
         "A row has the checks of one file. Some quick checks stand in a second file too, so the rows sum to "
         "more than all checks. In names, `*` stands for any letters."
     )

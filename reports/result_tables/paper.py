@@ -36,7 +36,7 @@ def table_3(found: Sequence[Number]) -> str:
         "A load of 70 N presses the ball of Table 1 on a flat, whose rms roughness is in the first column. "
         "Numbers of rough flats are means over 75 random surfaces. μ and A are summed over elements, as in "
         f"the paper. File: {link('reproduction')}.\n\n"
-        "- *E*: computed minus printed number.\n"
+        "- *E*: computed minus printed number, in per cent of the printed one.\n"
         "- *u*: uncertainty of E (95 %), from the random surfaces and from the rounding of printed numbers "
         "and inputs.\n"
         "- *Agrees*: abs(E) is at most u."
@@ -65,7 +65,7 @@ def hertz(run: Mapping[str, Any]) -> str:
     text = (
         "Is the exact solution met? A smooth ball under 70 N without friction has that of Hertz. An order of "
         "convergence says how fast errors fall on finer grids; its error is a difference. All other errors "
-        f"are relative. File: {link(RUN)}."
+        f"are relative. *Shifts*: mean of as many positions of the ball between elements. File: {link(RUN)}."
     )
     shown = [case for case in run["cases"] if case["id"].startswith("hertz/")]
     small_slope = "hertz/small-slope"  # its reference is no solution of Hertz
@@ -130,8 +130,8 @@ def _counted(items: Sequence[Judged]) -> str:
     counts = counted(items)
     listed = ", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count)
     return (
-        f"Which statements of the paper hold? {confirmed(items)} This table has those that are not "
-        "confirmed, the worst first. We read the paper as a text converted by machine, so a misprint may be "
+        f"Which statements of the paper hold? {confirmed(items)} This table has all others that were "
+        "judged, the worst first. We read the paper as a text converted by machine, so a misprint may be "
         f"one of the conversion. The verdicts on all {len(items)} statements: {listed}."
     )
 

@@ -37,8 +37,8 @@ def test_a_refuted_claim_and_a_failed_check_are_named(documents: dict[str, Any])
     broken = {**run["cases"][0], **unjudged, "status": "error"}
     counts = run["counts"] | {"pass": run["counts"]["pass"] - 1, "error": 1}
     made = page({**documents, "quick": {**run, "cases": [broken, *run["cases"][1:]], "counts": counts}})
-    (said,) = (line for line in made.splitlines() if "Not passed: " in line)
-    assert f"`{broken['id']}` (error)" in said.partition("Not passed: ")[2]
+    (said,) = (line for line in made.splitlines() if "Failed or not run: " in line)
+    assert f"`{broken['id']}` (error)" in said.partition("Failed or not run: ")[2]
 
 
 def test_table_3_has_the_printed_numbers_with_e_and_u(documents: dict[str, Any]) -> None:

@@ -84,7 +84,7 @@ def add_parser(commands: Parsers) -> None:
         ("element", appendix_tables.element, appendix_tables.ELEMENT_OPTIONS,
          "error of flat coefficients of a square element in three dimensions, from the shipped table"),
         ("surface", half_space.surface, half_space.OPTIONS,
-         "how far a half-space may be trusted on one's own surface; three solves"),
+         "how far a half-space may be trusted on one's own surface; two further solves"),
     ):  # fmt: skip
         about = text.capitalize() + "."
         made = subcommand(problems, name, run, options, help=text, description=about, epilog=_epilog(name))
