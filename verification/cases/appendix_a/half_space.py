@@ -47,11 +47,11 @@ def _plane(seed: int = JUDGED_ON) -> list[Judged]:
 
 
 @cache
-def _space() -> list[solid_half_space.SolidJudged]:
+def _space() -> list[Judged]:
     return [solid_half_space.judged(*scene) for scene in solid_half_space.SCENES]
 
 
-def _rates(contacts: list[Judged] | list[solid_half_space.SolidJudged]) -> dict[str, list[float]]:
+def _rates(contacts: list[Judged]) -> dict[str, list[float]]:
     """Return, by quantity, the share of contacts where the statement holds, and median stated over true."""
     found: dict[str, list[float]] = {}
     for name in QUANTITIES:
@@ -97,7 +97,7 @@ def warned() -> Measured:
     N off by more than 5 % has the warning
     Tolerance: contacts without a warning
     """
-    contacts: list[Judged | solid_half_space.SolidJudged] = [*_plane(WARNED_ON), *_space()]
+    contacts = [*_plane(WARNED_ON), *_space()]
     off = [c for c in contacts if abs(c.true["normal_force"]) > 0.05]
     missed = [c for c in off if not c.warned]
     return Measured(float(len(missed)), note=f"{len(off)} of {len(contacts)} are off by more than 5 %")

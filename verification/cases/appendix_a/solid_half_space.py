@@ -6,8 +6,6 @@ both sides are taken relative to themselves at a vanishing slope. The area, by w
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 import refimpl as rf
@@ -15,6 +13,7 @@ from appendix_a.contact_fem.scene import WAVENUMBER, Material, WavyPair
 from appendix_a.contact_fem.solid import asperity
 from appendix_a.contact_fem.solid_contact import press
 from refimpl.sensitivities.half_space import HalfSpaceError, half_space_error
+from verification.cases.appendix_a.undeformed_study import Judged
 
 BETA, SHARE, SLIGHT = 0.08, 0.05, 0.1
 ELEMENTS, M = 4, 64
@@ -28,15 +27,6 @@ SCENES = (  # lower, upper, shift, steepest slope (degrees)
     (SOFT, RIGID, -0.2, 8.0),
     (COPPER, STEEL, 0.0, 18.0),
 )
-
-
-@dataclass(frozen=True)
-class SolidJudged:
-    """True and stated relative errors of approach, N and mu; whether the solution warns of the half-space."""
-
-    true: dict[str, float]
-    stated: dict[str, float]
-    warned: bool
 
 
 def distance_of(pair: WavyPair) -> float:
@@ -75,7 +65,7 @@ def by_model(pair: WavyPair) -> tuple[rf.Solution, HalfSpaceError, float]:
     return solution, half_space_error(scene, solution), first
 
 
-def judged(lower: Material, upper: Material, shift: float, slope_deg: float) -> SolidJudged:
+def judged(lower: Material, upper: Material, shift: float, slope_deg: float) -> Judged:
     """Solve one pair of asperities."""
     steep, slight = (WavyPair(s, shift, lower, upper, beta=BETA) for s in (slope_deg, SLIGHT))
     approach, mu = np.array(by_elements(steep, ELEMENTS)) / np.array(by_elements(slight, ELEMENTS))
@@ -94,4 +84,4 @@ def judged(lower: Material, upper: Material, shift: float, slope_deg: float) -> 
     size["friction_coefficient"] = solution.friction_coefficient
     stated = {name: error.stated(name) / size[name] for name in true}
     warned = any(getattr(w, "limit", None) == "half-space" for w in solution.warnings)
-    return SolidJudged(true, stated, warned)
+    return Judged(true, stated, warned)

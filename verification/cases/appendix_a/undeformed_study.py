@@ -7,7 +7,7 @@ rigid on soft. One seed served to build the estimate of `refimpl.half_space.mode
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -171,8 +171,8 @@ class Judged:
 
     true: dict[str, float]
     stated: dict[str, float]
-    first_order: dict[str, float]
     warned: bool
+    first_order: dict[str, float] = field(default_factory=dict)
 
 
 def judged(profiles: Profiles, M: int = 384) -> Judged:
@@ -206,4 +206,4 @@ def judged(profiles: Profiles, M: int = 384) -> Judged:
     steep = steepness(solution.details.problem, solution.contact)
     stated = {q: (1 + FINITE_STRAIN) * abs(c) + SECOND_ORDER[q] * steep for q, c in change.items()}
     warned = any(getattr(w, "limit", None) == "half-space" for w in solution.warnings)
-    return Judged(true, stated, change, warned)
+    return Judged(true, stated, warned, change)
