@@ -1,6 +1,7 @@
 """Self-affine roughness: spectrum, statistics, one surface per seed, what is refused.
 
-The spectrum is written out here anew.
+The spectrum is written out here anew. A wave of the torus and its opposite have ``2 |Z|^2 / a^2`` of
+chi-square with two degrees of freedom, Z their coefficient and a^2 a wave's mean square, all independent.
 """
 
 from __future__ import annotations
@@ -49,6 +50,22 @@ def integral(weight: Callable[[float], float], table: dict[str, Any] = PARAMETER
 
     ends = [2 * math.pi / table[name] for name in ("long_cut", "roll_off", "short_cut")]
     return sum(quad(under, *pair, limit=400, epsabs=0, epsrel=1e-10)[0] for pair in pairwise(ends))
+
+
+def test_lay_stretches_the_spectrum() -> None:
+    """Periodic: waves are where C(sqrt(g^2 q_along^2 + q_across^2)) is; over 12 seeds they have its size."""
+    g, lay, n = 3.0, 0.7, 160
+    q = 2 * math.pi * np.fft.fftfreq(n, SIDE / n)
+    along, across = (math.cos(turn) * q[:, None] + math.sin(turn) * q for turn in (lay, lay + math.pi / 2))
+    power = shape(np.hypot(g * along, across))
+    squares = np.zeros((n, n))
+    for seed in range(1, 13):
+        z = rough(rms=1.0, seed=seed, anisotropy=g, lay=lay).sample(Grid.square(SIDE, n, periodic=True))
+        squares += np.abs(np.fft.fft2(z) / n**2) ** 2 / 12
+    assert squares[power == 0].max() < 1e-30
+    # a wave and its opposite are one: chi-square of the ratios has half as many pairs, of 24 freedoms each
+    ratios = squares[power > 0] * power.sum() / power[power > 0]
+    assert abs(ratios.mean() - 1) < 4 * math.sqrt(2 / (12 * ratios.size))
 
 
 def test_pinned() -> None:
