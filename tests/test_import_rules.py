@@ -12,9 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.layers import ROOT, attribute_reads, closure, imported_names, modules, room, uses
+from tests.layers import FILES, PACKAGES, ROOT, attribute_reads, closure, imported_names, modules, room, uses
 
-PACKAGES = ("refimpl", "appendix_a", "verification", "reports")
 ALLOWED: dict[str, set[str]] = {
     "refimpl": set(),
     "appendix_a": set(),
@@ -52,9 +51,6 @@ def breaches(path: Path, source: str) -> list[str]:
         for line, module in imported(source)
         if not any(f"{module}.".startswith(f"{name}.") for name in allowed)
     ]
-
-
-FILES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
 
 
 @pytest.mark.parametrize("package", PACKAGES)

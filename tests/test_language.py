@@ -16,13 +16,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.layers import ROOT
+from tests.layers import FILES, ROOT
 from tests.prose import paragraphs, plain, too_long, visible
 
-PACKAGES = ("refimpl", "appendix_a", "verification", "reports")
 LANGUAGE = tomllib.loads((ROOT / "tests/language.toml").read_text(encoding="utf-8"))
 PATTERNS, WORDS = LANGUAGE["pattern"], LANGUAGE["names"]
-FILES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
 
 SUMMITS = "summits in the sense of Nayak, and of Greenwood and Tripp"
 KEY = "key of recorded results"
@@ -48,11 +46,8 @@ KEPT = {
     "reports/studies/extremes.py": "named after the committed result that it shows",
     "Extreme": "a state at an end of its axis",
     "run_state(extreme)": "a state at an end of its axis",
-    "summits": SUMMITS,
-    "gaussian_summits": SUMMITS,
-    "summit_rms": SUMMITS,
-    "summit_density": SUMMITS,
-    "summit_radius": SUMMITS,
+    **dict.fromkeys(("summits", "gaussian_summits"), SUMMITS),
+    **dict.fromkeys(("summit_rms", "summit_density", "summit_radius"), SUMMITS),
 }
 """Reasons of names."""
 

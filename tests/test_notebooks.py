@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from tests.documents import ROOT, agree
-from tests.test_examples import PHONE
+from tests.test_examples import legible
 
 FOLDER = ROOT / "docs" / "notebooks"
 STATED = {
@@ -86,8 +86,7 @@ def test_figures_are_legible_on_a_phone_and_have_a_text(name: str) -> None:
         source = "".join(cell["source"])
         if cell["cell_type"] == "code" and "plt.subplots(" in source:
             inches = float(re.findall(r"figsize=\(([\d.]+)", source)[0])
-            smallest = min([10.0, *map(float, re.findall(r"fontsize=([\d.]+)", source))])
-            assert smallest / 72 / inches * PHONE >= 9
+            assert legible(source, inches)
             assert len(cell["metadata"]["alt"].split()) > 5
 
 

@@ -15,11 +15,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.documents import ROOT
+from tests.layers import PACKAGES, ROOT
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 DATA: dict[str, list[str]] = PROJECT["tool"]["setuptools"]["package-data"]
-PACKAGES = ("refimpl", "appendix_a", "verification", "reports")
 
 
 @pytest.mark.parametrize("package", PACKAGES)
@@ -82,6 +81,19 @@ def test_the_tools_are_those_of_the_extra() -> None:
     assert PROJECT["dependency-groups"]["dev"] == [each for each in extra if not each.startswith("rough-")]
 
 
+def run(*arguments: str, folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Python in a folder, whose modules come before the checkout's."""
+    paths = {"PYTHONPATH": os.pathsep.join((str(folder), str(ROOT)))}
+    return subprocess.run(
+        [sys.executable, *arguments],
+        cwd=folder,
+        env=os.environ | paths | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
 def test_the_model_needs_numpy_scipy_and_three_small_packages() -> None:
     """Of what is installed with it, the rest is for verification, pictures, files of meshes and reports."""
     needed = {"numpy", "scipy", "psutil", "threadpoolctl", "tomli-w"}
@@ -89,10 +101,7 @@ def test_the_model_needs_numpy_scipy_and_three_small_packages() -> None:
     names = {"scikit-fem": "skfem"}
     blocked = "".join(f"sys.modules[{names.get(name, name)!r}] = None\n" for name in sorted(others))
     solve = "import refimpl as rf; assert rf.solve(rf.read_scene('table1-rough'), grid=24).converged"
-    done = subprocess.run(
-        [sys.executable, "-c", f"import sys\n{blocked}{solve}"],
-        cwd=ROOT, capture_output=True, encoding="utf-8", check=False,
-    )  # fmt: skip
+    done = run("-c", f"import sys\n{blocked}{solve}", folder=ROOT)
     assert done.returncode == 0, done.stderr
 
 
@@ -108,20 +117,12 @@ def test_without_any_extra_it_solves_plots_and_writes_csv(tmp_path: Path) -> Non
         f"import sys\n{blocked}"
     )  # workers of a sweep start with it too
     (tmp_path / "study.toml").write_text('scene = "hertz"\n[vary]\ngrid = 8\nload = [1.0, 2.0]\n')
-    paths = os.pathsep.join((str(tmp_path), str(ROOT)))
     commands = (
         "solve hertz --grid 8 --plot s.png --patches s.csv --npz s.npz --vtk s.vtu --json s.json",
         "sweep study.toml --workers 1 --csv t.csv --plot t.pdf",
     )
     code = "from verification.start import run; raise SystemExit(any(run(c.split()) for c in sys.argv[1:]))"
-    done = subprocess.run(
-        [sys.executable, "-c", f"import sys; {code}", *commands],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": paths, "MPLBACKEND": "none such"},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = run("-c", f"import sys; {code}", *commands, folder=tmp_path, MPLBACKEND="none such")
     assert done.returncode == 0, done.stderr
     written = {path.name for path in tmp_path.iterdir() if path.stat().st_size > 100}
     assert written >= {"s.png", "s.csv", "s.npz", "s.vtu", "s.json", "t.csv", "t.pdf"}
@@ -131,12 +132,8 @@ def test_a_module_that_hides_the_package_is_named_in_one_line(tmp_path: Path) ->
     """By the console script's entry, and by `python -m`, which looks in the working directory first."""
     name = "verification.py"
     (tmp_path / name).write_text("raise RuntimeError('imported')\n")
-    path = os.pathsep.join((str(tmp_path), str(ROOT)))
     entry = "import rough_friction; raise SystemExit(rough_friction.run())"
     for how in (["-c", entry], ["-m", "rough_friction"]):
-        done = subprocess.run(
-            [sys.executable, *how, "--help"], cwd=tmp_path, env=os.environ | {"PYTHONPATH": path},
-            capture_output=True, text=True,
-        )  # fmt: skip
+        done = run(*how, "--help", folder=tmp_path)
         assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
         assert f"{tmp_path / name} hides" in done.stderr

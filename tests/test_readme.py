@@ -64,6 +64,12 @@ def test_what_it_names_is_there() -> None:
         assert (ROOT / name).exists(), name
 
 
+def case(name: str, identity: str) -> dict[str, Any]:
+    """A case of a committed result."""
+    (found,) = (one for one in committed(name)["cases"] if one["id"] == identity)
+    return dict(found)
+
+
 def stated_by_class(head: str) -> dict[str, list[str]]:
     """The covered share and the bar over the error of a table on the page of error bars, by class."""
     lines = PAGE_OF_BARS.splitlines()
@@ -76,14 +82,11 @@ def stated_by_class(head: str) -> dict[str, list[str]]:
 
 
 def test_the_classes_covered_least_are_those_of_the_study() -> None:
-    rows: dict[str, dict[str, Any]] = {}
-    for row in committed("coverage_corrected")["table"]:
-        rows.setdefault(row["class"], {})[row["number"]] = row
-    found = {}
-    for kind, numbers in rows.items():
-        row = numbers["friction_coefficient_corrected"]
-        found[kind] = [f"{100 * row['held']:.0f} %", f"{row['median_bar_over_error']:.1f}"]
-    del found[None]
+    found = {
+        row["class"]: [f"{100 * row['held']:.0f} %", f"{row['median_bar_over_error']:.1f}"]
+        for row in committed("coverage_corrected")["table"]
+        if row["number"] == MU and row["class"]
+    }
     lower = {kind: cells for kind, cells in found.items() if int(cells[0].split()[0]) < 98}
     assert f"In {len(found) - len(lower)} of {len(found)} classes 98 to 100 %" in PAGE_OF_BARS
     assert stated_by_class("| class of scene | corrected mu") == lower
@@ -113,18 +116,16 @@ def test_what_is_said_of_other_numbers_is_of_the_study() -> None:
     low = sorted((100 * held, kind) for kind, held in failing.items() if held < 0.9)
     said = [f"{kind} ({share:.0f} %{' cover' * (k == 0)})" for k, (share, kind) in enumerate(low)]
     assert f"bars are too short on {', '.join(said)} |" in PAGE_OF_BARS
-    (random,) = (case for case in committed("pulled")["cases"] if case["id"] == "accuracy/pulled-random")
-    held = [100 * share for share in random["data"]["held"].values()]
+    held = [100 * share for share in case("pulled", "accuracy/pulled-random")["data"]["held"].values()]
     assert f"{min(held):.0f} to {max(held):.0f} % cover, on 300 scenes" in PAGE_OF_BARS
-    (finer,) = (case for case in committed("sensitivity")["cases"] if case["id"] == "sensitivity/finer-grids")
-    shares = zip(("mu", "A", "p_max", "Q"), finer["data"]["covered"].values(), strict=True)
+    finer = case("sensitivity", "sensitivity/finer-grids")["data"]["covered"]
+    shares = zip(("mu", "A", "p_max", "Q"), finer.values(), strict=True)
     said = ", ".join(f"{name} {100 * share:.0f} %" for name, share in shares)
     assert f"On 40 scenes they cover: {said}." in PAGE_OF_BARS
 
 
 def test_a_requested_accuracy_is_met_as_is_said() -> None:
-    (found,) = (one for one in committed("further")["cases"] if one["id"] == "accuracy/classes")
-    shares = found["data"]["error over accuracy"].values()
+    shares = case("further", "accuracy/classes")["data"]["error over accuracy"].values()
     worst = max(max(share) for share in shares)
     assert worst <= 1
     converged = "{}, {} and {} ended as `CONVERGED`".format(*map(len, shares))

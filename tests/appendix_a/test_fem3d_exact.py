@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import mpmath as mp
 import numpy as np
 import pytest
 
@@ -12,6 +11,7 @@ from appendix_a.fem3d import patch
 from appendix_a.fem3d.leading_order import GAUSS, far_part, wave_kernel
 from appendix_a.fem3d.surface import X, Y
 from appendix_a.fem3d.wavy import Kind, Waviness
+from refimpl import kernels
 
 NU = 0.3
 SHEAR, LAME = 0.5 / (1 + NU), NU / ((1 + NU) * (1 - 2 * NU))
@@ -22,21 +22,14 @@ def one(value: float) -> np.ndarray:
     return np.array([value])
 
 
-@pytest.mark.parametrize(("x", "y", "half_x"), [(0.0, 0.0, 1.0), (-4.0, 1.5, 0.9)])
-def test_love_integral_against_quadrature(x: float, y: float, half_x: float) -> None:
-    """Exactly over x, by mpmath over y."""
-    strips = sorted({-1.0, 1.0, *([y] if -1 < y < 1 else [])})
-    inner = [-half_x, *([x] if -half_x < x < half_x else []), half_x]
-    expected = mp.quad(
-        lambda t: mp.asinh((inner[-1] - x) / abs(t - y)) - mp.asinh((inner[0] - x) / abs(t - y)), strips
-    )
-    assert patch.normal_integral(one(x), one(y), half_x)[0] == pytest.approx(float(expected), rel=1e-12)
-
-
-@pytest.mark.parametrize(("x", "y"), [(2.0, 0.0), (-4.0, 1.5)])
-def test_cerruti_integral_against_quadrature(x: float, y: float) -> None:
-    expected = mp.quad(lambda s, t: (x - s) / ((x - s) ** 2 + (y - t) ** 2), [-1, 1], [-1, 1])
-    assert patch.tangential_integral(one(x), one(y))[0] == pytest.approx(float(expected), rel=1e-12)
+def test_integrals_over_the_patch_are_the_models() -> None:
+    """`refimpl.kernels` is held to 50 digits by its cases; oblong patches are for a tilted plane."""
+    x, y = np.array([0.0, 2.0, -4.0]), np.array([0.0, 0.0, 1.5])
+    for half_x in (1.0, 0.9):
+        expected = kernels.normal_integral(x, y, 2 * half_x, 2.0)
+        np.testing.assert_allclose(patch.normal_integral(x, y, half_x), expected, rtol=1e-12)
+        expected = kernels.tangential_integral(x, y, 2 * half_x, 2.0)
+        np.testing.assert_allclose(patch.tangential_integral(x, y, half_x), expected, rtol=1e-12, atol=1e-15)
 
 
 def gradient(field: Field, at: np.ndarray) -> np.ndarray:

@@ -112,27 +112,19 @@ def test_waves_that_a_grid_misses_leave_its_approach_open_by_their_share() -> No
     assert bars[1] == pytest.approx(math.hypot(bars[0], 0.3 * factor * APPROACH_SCATTER[1] * 1e-6))
 
 
-def test_tau_on_the_edge_widens_the_approach_under_a_load_alone() -> None:
-    grids = [replace(made_up(M), depth=2e-6) for M in (32, 64)]
+@pytest.mark.parametrize(
+    ("loaded", "widened"), [(True, {"approach": 2e-6}), (False, {"normal_force": 70.0, "max_pressure": None})]
+)
+def test_tau_on_the_edge_widens_what_is_not_given(loaded: bool, widened: dict[str, float | None]) -> None:
+    """Under a load the approach, by the depth of 2 um; at an approach the force and the peak, by shares."""
+    grids = [replace(made_up(M), loaded=loaded, depth=2e-6) for M in (32, 64)]
     pulled = [replace(grid, shear_to_normal_ratio=0.3) for grid in grids]
     share = 0.3 * grids[-1].edge / grids[-1].numbers["contact_area"]
     before, after = estimates(grids), estimates(pulled)
-    bound = SHEAR_BOUNDS["approach"] * share * 2e-6
-    assert after["approach"].half_width == pytest.approx(
-        math.hypot(before["approach"].half_width, bound), rel=1e-12
-    )
-    assert {name for name in after if after[name] != before[name]} == {"approach"}
-
-
-def test_at_an_approach_it_widens_the_force_and_the_peak() -> None:
-    grids = [replace(made_up(M), loaded=False) for M in (32, 64)]
-    pulled = [replace(grid, shear_to_normal_ratio=0.3, depth=2e-6) for grid in grids]
-    share = 0.3 * grids[-1].edge / grids[-1].numbers["contact_area"]
-    before, after = estimates(grids), estimates(pulled)
-    for name in ("normal_force", "max_pressure"):
-        bound = SHEAR_BOUNDS[name] * share * grids[-1].numbers[name]
+    for name, size in widened.items():
+        bound = SHEAR_BOUNDS[name] * share * (size or grids[-1].numbers[name])
         assert after[name].half_width == pytest.approx(math.hypot(before[name].half_width, bound), rel=1e-12)
-    assert {name for name in after if after[name] != before[name]} == {"normal_force", "max_pressure"}
+    assert {name for name in after if after[name] != before[name]} == set(widened)
 
 
 DA = 0.25e-6  # m^2: elements of 0.5 mm

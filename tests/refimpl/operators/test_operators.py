@@ -116,21 +116,6 @@ def test_periodic_fft_is_the_periodic_matrix(kind: str, grid: Grid) -> None:
     np.testing.assert_allclose(found, expected, atol=1e-14 * scale, rtol=0)
 
 
-@pytest.mark.parametrize(("k", "m"), [(1, 0), (0, 2), (3, -1)])
-@pytest.mark.parametrize("grid", [Grid.square(0.3, 16), Grid((15, 8), (0.3, 0.5))], ids=name)
-def test_periodic_waves_have_the_half_space_symbols(k: int, m: int, grid: Grid) -> None:
-    """``cos(q x)`` gives ``2 pi / |q| cos(q x)`` and, sheared, ``2 pi q_s / q^2 sin(q x)``."""
-    grid, angle = replace(grid, periodic=True), 0.7
-    q = 2 * np.pi * np.array([k, m]) / grid.lengths
-    phase = q[0] * grid.x[:, None] + q[1] * grid.y[None, :]
-    length, along = np.hypot(*q), q @ [math.cos(angle), math.sin(angle)]
-    for operator in (window_influence(grid, angle), DenseInfluence(grid, angle)):
-        found = operator.normal(np.cos(phase))
-        np.testing.assert_allclose(found, 2 * np.pi / length * np.cos(phase), atol=2e-15)
-        expected = 2 * np.pi * along / length**2 * np.sin(phase)
-        np.testing.assert_allclose(operator.shear(np.cos(phase)), expected, atol=2e-15)
-
-
 @on_grids
 @pytest.mark.parametrize("periodic", [False, True])
 def test_both_kernels_in_one_product_cost_one(grid: Grid, periodic: bool) -> None:

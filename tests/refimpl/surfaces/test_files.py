@@ -74,9 +74,8 @@ def malformed(folder: Path) -> dict[str, Path]:
     np.save(folder / "pickle.npy", unpickled, allow_pickle=True)
     np.savez(folder / "pickle.npz", z=unpickled)
     (folder / "pickle.x3p").write_bytes((folder / "pickle.npz").read_bytes())
-    write_x3p(folder / "huge.x3p", np.empty((2**20, 0)), data=b"").write_bytes(
-        write_x3p(folder / "nodata.x3p", ROUGH, data=b"").read_bytes()
-    )
+    write_x3p(folder / "huge.x3p", np.empty((2**20, 0)), data=b"")
+    write_x3p(folder / "nodata.x3p", ROUGH, data=b"")
     write_x3p(folder / "negative.x3p", ROUGH, dx=-DX)
     (folder / "folder.x3p").mkdir()
     return {path.name: path for path in folder.iterdir() if path.name != "whole.x3p"}

@@ -141,6 +141,16 @@ def written_ripple(
     return rf.MeasuredSurface(folder / "ripple.npy", unit="m", pixel_size=DY, level="none", **options)
 
 
+def turned_ripple(
+    grid: Grid, degrees: float, middle: tuple[float, float] = (0.0, 0.0), over: bool = False
+) -> np.ndarray:
+    """The function itself on a grid about that place of the map."""
+    x, y = from_middle(grid)
+    x, y = (x, -y) if over else (x, y)
+    cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return (-1.0 if over else 1.0) * ripple(cos * x + sin * y + middle[0], cos * y - sin * x + middle[1])
+
+
 @pytest.mark.parametrize("angle", [45, 30, -17.5, 120.25, 200.0])
 @pytest.mark.parametrize("over", [False, True])
 def test_a_map_turned_by_any_angle_is_the_turned_function(tmp_path: Path, angle: float, over: bool) -> None:
@@ -148,11 +158,7 @@ def test_a_map_turned_by_any_angle_is_the_turned_function(tmp_path: Path, angle:
     shape, centre = (60, 80), (33e-6, 38e-6)
     surface = written_ripple(tmp_path, shape, rotate_deg=angle, turn_over=over, centre=centre)
     grid = Grid((40, 32), (20e-6, 16e-6))
-    x, y = from_middle(grid)
-    x, y = (x, -y) if over else (x, y)
-    cos, sin = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-    at = cos * x + sin * y + centre[0] - 30e-6, cos * y - sin * x + centre[1] - 40e-6
-    expected = (-1.0 if over else 1.0) * ripple(*at)
+    expected = turned_ripple(grid, angle, (centre[0] - 30e-6, centre[1] - 40e-6), over)
     np.testing.assert_allclose(surface.heights(grid), expected, rtol=0, atol=2e-3 * np.ptp(expected))
 
 
@@ -172,9 +178,7 @@ def test_a_square_that_fits_a_turned_oblong_map_is_used(tmp_path: Path) -> None:
     surface = written_ripple(tmp_path, (125, 95), rotate_deg=12)
     assert min(surface.extent((0.0, 0.0))) < 75e-6
     grid = Grid((40, 40), (79e-6, 79e-6))
-    x, y = from_middle(grid)
-    cos, sin = math.cos(math.radians(12)), math.sin(math.radians(12))
-    expected = ripple(cos * x + sin * y, cos * y - sin * x)
+    expected = turned_ripple(grid, 12)
     np.testing.assert_allclose(surface.heights(grid), expected, rtol=0, atol=2e-3 * np.ptp(expected))
     with pytest.raises(rf.InputError, match=r"at most the measured 8e-05 x 8e-05 m of ripple\.npy"):
         surface.heights(Grid((8, 8), (82e-6, 82e-6)))
