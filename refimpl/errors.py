@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import math
 import numbers
 import os
@@ -149,6 +150,15 @@ def require_regular(field: str, path: Path, most: int) -> None:
     found = os.path.exists(path) and not os.path.isdir(path)  # no error for long names
     if found and not (os.path.isfile(path) and os.path.getsize(path) <= most):
         raise InputError(field, str(path), f"a regular file of at most {most} bytes")
+
+
+def require_installed(field: str, value: object, allowed: str, *modules: str) -> None:
+    """Raise `InputError` unless all modules of an optional library can be imported."""
+    try:
+        for module in modules:
+            importlib.import_module(module)
+    except ModuleNotFoundError as missing:
+        raise InputError(field, value, allowed) from missing
 
 
 def size_text(lengths: Iterable[float]) -> str:

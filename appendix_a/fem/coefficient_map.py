@@ -14,6 +14,7 @@ import json
 import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,8 +117,8 @@ class CoefficientMap:
         flat = pressed_strip(offset, nu) / modulus + pressed_strip(offset, nu_upper) / modulus_upper
         return 100.0 * (below / modulus + above / modulus_upper) / flat
 
-    def write(self, path: Path) -> None:
-        """Return the table as JSON, with what it means and how it was made."""
+    def document(self) -> dict[str, Any]:
+        """Return the table for JSON, with what it means and how it was made."""
         document = {
             "version": VERSION,
             "what": (
@@ -139,7 +140,11 @@ class CoefficientMap:
             key: np.round(value, DECIMALS).tolist() if isinstance(value, np.ndarray) else value
             for key, value in asdict(self).items()
         }
-        path.write_text(json.dumps(document | arrays, separators=(",", ": ")) + "\n", encoding="utf-8")
+        return document | arrays
+
+    def write(self, path: Path) -> None:
+        """Write the table as JSON."""
+        path.write_text(json.dumps(self.document(), separators=(",", ": ")) + "\n", encoding="utf-8")
 
     @classmethod
     def read(cls, path: Path) -> CoefficientMap:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from refimpl.errors import InputError
+from refimpl.errors import require_installed
 from refimpl.grid import Array, Grid, Mask
 from refimpl.grid.contact_patches import patch_centres, patch_labels
 from refimpl.solution.quantities import QUANTITIES
@@ -122,11 +122,10 @@ def attributes_of(solution: Record, provenance: Mapping[str, str] | None = None)
 
 def as_dataset(solution: Record, provenance: Mapping[str, str] | None = None) -> Any:
     """Return an `xarray.Dataset` of the fields over x and y (m); `InputError` without xarray."""
-    try:
-        import xarray
-    except ModuleNotFoundError as missing:
-        allowed = "xarray installed: pip install '.[arrays]' in a checkout"
-        raise InputError("to_xarray", "xarray", allowed) from missing
+    allowed = "xarray installed: pip install '.[arrays]' in a checkout"
+    require_installed("to_xarray", "xarray", allowed, "xarray")
+    import xarray
+
     centres = {"x": solution.grid.x, "y": solution.grid.y}
     data = {
         name: (("x", "y"), _numeric(field.values), {"units": field.unit, "long_name": field.description})

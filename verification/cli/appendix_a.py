@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
-import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 from verification.cli import appendix_tables, half_space
@@ -154,13 +151,9 @@ def coefficient_map(options: argparse.Namespace) -> int:
             workers=options.jobs,
             progress=lambda *_: line.tick("slopes and wavelengths"),
         )
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "map.json"
-        found.write(path)
-        document = json.loads(path.read_text(encoding="utf-8"))
     rows = [[axis.replace("_", " "), " ".join(f"{x:g}" for x in getattr(found, axis))] for axis in MAP_AXES]
     error = f"stated error, percentage points: {found.error_percentage_points.max():.2g}"
-    emit(document, options.json, f"{columns(rows, indent='')}\n{error}")
+    emit(found.document(), options.json, f"{columns(rows, indent='')}\n{error}")
     return 0
 
 

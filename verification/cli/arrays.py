@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from verification.cli.output import refusal
 from verification.output.text_table import csv_text
 
 if TYPE_CHECKING:
@@ -17,13 +16,11 @@ PATCH_UNITS = {"area": "m^2", "load": "N", "mean_pressure": "Pa", "max_pressure"
 
 def require_netcdf(netcdf: Path | None) -> None:
     """Refuse, before any work, NetCDF without its library. Raises InputError."""
+    from refimpl.errors import require_installed
+
     if netcdf is not None:
-        try:
-            import h5netcdf  # noqa: F401  # only whether it is there
-            import xarray  # noqa: F401
-        except ModuleNotFoundError as missing:
-            allowed = "xarray and h5netcdf installed (in a checkout: pip install '.[arrays]'), or --npz"
-            raise refusal("--netcdf", str(netcdf), allowed) from missing
+        allowed = "xarray and h5netcdf installed (in a checkout: pip install '.[arrays]'), or --npz"
+        require_installed("--netcdf", str(netcdf), allowed, "xarray", "h5netcdf")
 
 
 def write_npz(solution: Solution, path: Path) -> None:

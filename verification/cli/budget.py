@@ -86,16 +86,8 @@ def _undetermined(budgets: Budgets) -> list[str]:
 
 
 def _parts(part: Budget) -> dict[str, object]:
-    return {
-        "value": part.value,
-        "numerical": part.numerical,
-        "input": part.input,
-        "inputs": dict(part.inputs),
-        "sampling": part.sampling,
-        "model_form": part.model_form,
-        "model_form_sources": dict(part.sources),
-        "total": part.total,
-    }
+    names = ("value", "numerical", "input", "inputs", "sampling", "model_form", "total")
+    return {name: getattr(part, name) for name in names} | {"model_form_sources": part.sources}
 
 
 def _share(part: Budget, width: float | None) -> str:

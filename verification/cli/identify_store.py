@@ -10,13 +10,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from refimpl.errors import InputError, require_regular
 from refimpl.identification.forward import response_from_dict
 from refimpl.scene.scene import Scene
 from refimpl.scene.scene_file import scene_to_dict
-from verification.cli.output import files_of
+from verification.cli.output import files_of, read_or_refuse, refusal
 from verification.output.files import to_json, write_text
-from verification.output.result_files import MOST_BYTES, parsed
 from verification.sweep.run import code_digest, file_digest
 from verification.sweep.store import checksum, damaged_row
 
@@ -37,23 +35,18 @@ class SolveStore(UserDict[str, Mapping[str, Any]]):
 
 
 def _read(path: Path) -> dict[str, Any]:
-    allowed = "a store of 'identify', or a new file"
-    require_regular("store", path, MOST_BYTES)
+    document = read_or_refuse("store", path)
     try:
-        document = parsed(path.read_text(encoding="utf-8"))
-        if not isinstance(document, dict) or document.get("format") != FORMAT:
-            raise InputError("store", str(path), f"{allowed}, of the format {FORMAT!r}")
+        if document["format"] != FORMAT:
+            raise refusal("store", str(path), f"a store of 'identify' ({FORMAT}), or a new file")
         for key, row in document["solves"].items():
             if checksum([key, row["response"]]) != row["checksum"]:
                 raise damaged_row(path, key)
             response_from_dict(row["response"])
         return {key: row["response"] for key, row in document["solves"].items()}
-    except InputError:
-        raise
-    except OSError as refused:
-        raise InputError("store", str(path), f"a file that can be read ({refused.strerror})") from refused
-    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as damaged:
-        raise InputError("store", str(path), f"{allowed}: this one is damaged") from damaged
+    except (TypeError, KeyError, AttributeError) as damaged:
+        allowed = "a store of 'identify', or a new file: this one is damaged"
+        raise refusal("store", str(path), allowed) from damaged
 
 
 def key(scene: Scene, settings: Mapping[str, Any]) -> str:

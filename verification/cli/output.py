@@ -9,7 +9,7 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from verification.output.files import is_stream, to_json, write_text
 
@@ -74,6 +74,23 @@ def files_of(scene: Scene) -> list[Path]:
 
     parts = (*scene.upper.surface.parts, *scene.lower.surface.parts)
     return [Path(part.path) for part in parts if isinstance(part, MeasuredSurface)]
+
+
+def read_or_refuse(option: str, path: Path) -> Any:
+    """Return the document of a JSON file; raises InputError, naming the option, for no such file."""
+    from refimpl.errors import require_regular
+    from verification.output.result_files import MOST_BYTES, read_result
+
+    require_regular(option, path, MOST_BYTES)
+    try:
+        return read_result(path)
+    except FileNotFoundError as missing:
+        allowed = "a result file; make one with 'rough-friction verify --json FILE'"
+        raise refusal(option, str(path), allowed) from missing
+    except OSError as refused:
+        raise refusal(option, str(path), f"a file that can be read ({refused.strerror})") from refused
+    except (ValueError, RecursionError) as corrupt:  # JSON, UTF-8, or thousands of digits
+        raise refusal(option, str(path), f"JSON ({corrupt})") from corrupt
 
 
 def emit(document: object, path: Path | None, table: str) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from verification.cli.options import Options, option
-from verification.cli.output import check_outputs, emit, refusal
+from verification.cli.output import check_outputs, emit, read_or_refuse, refusal
 from verification.output.files import StatusLine
 from verification.output.text_table import columns, wrapped
 
@@ -107,20 +107,3 @@ def read_run(path: Path, option: str = "--results") -> Any:
         return check(found)
     except ResultFileError as wrong:
         raise refusal(option, str(path), f"a result file of 'verify' ({wrong})") from wrong
-
-
-def read_or_refuse(option: str, path: Path) -> Any:
-    """Return the document of a result file; raises InputError, naming the option, for no such file."""
-    from refimpl.errors import require_regular
-    from verification.output.result_files import MOST_BYTES, read_result
-
-    require_regular(option, path, MOST_BYTES)
-    try:
-        return read_result(path)
-    except FileNotFoundError as missing:
-        allowed = "a result file; make one with 'rough-friction verify --json FILE'"
-        raise refusal(option, str(path), allowed) from missing
-    except OSError as refused:
-        raise refusal(option, str(path), f"a file that can be read ({refused.strerror})") from refused
-    except (ValueError, RecursionError) as corrupt:  # JSON, UTF-8, or thousands of digits
-        raise refusal(option, str(path), f"JSON ({corrupt})") from corrupt

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -10,6 +11,8 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 """Where libraries of BLAS, ducc0 and `refimpl.operators.threads` read it, most of them at import."""
+
+_TURN = threading.RLock()
 
 
 @contextmanager
@@ -40,10 +43,11 @@ def one_thread() -> Iterator[None]:
 def limited_to_one_thread() -> Iterator[None]:
     """Limit this process to one thread in the block, whatever its environment was at import.
 
-    BLAS is limited by its own interface; transforms read the environment at every call. Raises RuntimeError
-    where a library of BLAS or OpenMP does not take the limit.
+    BLAS is limited by its own interface; transforms read the environment at every call. Both are the
+    process's own, so blocks of several threads take turns. Raises RuntimeError where a library of BLAS or
+    OpenMP does not take the limit.
     """
-    with one_thread(), threadpool_limits(1):
+    with _TURN, one_thread(), threadpool_limits(1):
         loose = [pool["internal_api"] for pool in threadpool_info() if pool["num_threads"] != 1]
         if loose:
             raise RuntimeError(f"{', '.join(loose)} cannot be limited to one thread")

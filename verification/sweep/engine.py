@@ -28,7 +28,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from refimpl.errors import InputError
+from refimpl.errors import InputError, require_installed
 from refimpl.operating_system import interrupts_blocked
 from verification.framework.threads import one_thread
 from verification.framework.workers import kill_workers
@@ -179,13 +179,11 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def _cluster(address: str) -> Iterator[Executor]:
-    try:
-        import distributed
+    allowed = "dask.distributed installed: pip install '.[cluster]' in a checkout"
+    require_installed("--scheduler", address, allowed, "distributed")
+    import distributed
 
-        connect: Any = distributed.Client  # untyped
-    except ModuleNotFoundError as missing:
-        allowed = "dask.distributed installed: pip install '.[cluster]' in a checkout"
-        raise InputError("--scheduler", address, allowed) from missing
+    connect: Any = distributed.Client  # untyped
     with ExitStack() as stack:
         # libraries are silent about connections that break: `WorkersLost` is one line about them
         stack.callback(logging.disable, logging.root.manager.disable)

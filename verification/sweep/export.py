@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from refimpl.errors import InputError
+from refimpl.errors import require_installed
 from refimpl.scene.scene_file import FRICTION, MATERIAL, SCENE, SURFACES
 from refimpl.solution.quantities import QUANTITIES
 from verification.output.files import replacing, write_text
@@ -52,11 +52,10 @@ def header(name: str) -> str:
 
 def to_dataframe(rows: Sequence[Row]) -> Any:
     """Return a `pandas.DataFrame`, full names as own columns; InputError without pandas."""
-    try:
-        import pandas
-    except ModuleNotFoundError as missing:
-        allowed = "pandas installed (pip install '.[arrays]' in a checkout)"
-        raise InputError("to_dataframe", "pandas", allowed) from missing
+    allowed = "pandas installed (pip install '.[arrays]' in a checkout)"
+    require_installed("to_dataframe", "pandas", allowed, "pandas")
+    import pandas
+
     frame = pandas.DataFrame([row | named(row) for row in rows])
     frame.attrs["units"] = {name: unit_of(name) for name in frame.columns}
     return frame
@@ -103,8 +102,5 @@ def write_parquet(rows: Sequence[Row], path: Path) -> None:
 
 def require_parquet(path: Path) -> None:
     """Raise InputError at once, before any work, where Parquet is unavailable."""
-    try:
-        import pyarrow.parquet  # noqa: F401  # only whether it is there
-    except ModuleNotFoundError as missing:
-        allowed = "pyarrow installed (pip install '.[parquet]' in a checkout), or --csv instead"
-        raise InputError("--parquet", str(path), allowed) from missing
+    allowed = "pyarrow installed (pip install '.[parquet]' in a checkout), or --csv instead"
+    require_installed("--parquet", str(path), allowed, "pyarrow.parquet")

@@ -93,28 +93,27 @@ def test_verify_writes_what_the_report_reads(folder: Path) -> None:
     assert [p.name for p in Path("report").iterdir()] == ["report.html"]
 
 
-@pytest.mark.parametrize("status", [Status.FAIL, Status.ERROR, Status.UNAVAILABLE])
-def test_verify_without_a_pass_has_status_1(status: Status, monkeypatch: pytest.MonkeyPatch) -> None:
-    case = Case("a/b", "t", "c", "s", Metric.EQUAL, 0.0, "exact", lambda: Measured(1.0, 1.0))
-    done = runner.Run(Tier.QUICK, (), (case.result(status, "the reason", 0.0),), 0.0)
-    monkeypatch.setattr(runner, "run", lambda *_, **__: done)
-    printed = shown(f"verify --only {QUICK}", 1)
-    assert status.value in printed
-    assert ("the reason" in printed) is (status is not Status.FAIL)
-
-
-def test_a_tolerance_set_from_the_result_is_recorded_as_in_the_report(
+def test_verify_shows_every_status_and_reasons_of_what_was_not_judged(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    """A tolerance set from the result is recorded, as in the report; a run with a failure has status 1."""
     made = [
-        Case(f"a/{k}", "t", "c", "s", Metric.EQUAL, 0.0, reason, lambda: Measured(1.0, 1.0)).run()
-        for k, reason in enumerate(("exact", "recorded: 1.0"))
+        Case(f"a/{k}", "t", "c", "s", Metric.EQUAL, 0.0, reason, lambda: Measured(1.0, 1.0))
+        for k, reason in enumerate(("exact", "recorded: 1.0", *3 * ["exact"]))
     ]
-    monkeypatch.setattr(runner, "run", lambda *_, **__: runner.Run(Tier.QUICK, (), tuple(made), 0.0))
-    printed = shown(f"verify --only {QUICK}")
-    assert re.search(r"^pass +a/0", printed, flags=re.M)
-    assert re.search(r"^recorded +a/1", printed, flags=re.M)
-    assert "1 pass, 1 recorded, 0 fail, 0 error, 0 unavailable" in printed
+    failed, broken, missing = made[2:]
+    results = (
+        *(case.run() for case in made[:2]),
+        failed.result(Status.FAIL, "why a/2", 0.0),
+        broken.result(Status.ERROR, "why a/3", 0.0),
+        missing.result(Status.UNAVAILABLE, "why a/4", 0.0),
+    )
+    monkeypatch.setattr(runner, "run", lambda *_, **__: runner.Run(Tier.QUICK, (), results, 0.0))
+    printed = shown(f"verify --only {QUICK}", 1)
+    for k, status in enumerate(("pass", "recorded", "fail", "error", "unavailable")):
+        assert re.search(rf"^{status} +a/{k}", printed, flags=re.M)
+        assert (f"why a/{k}" in printed) is (k > 2)
+    assert "1 pass, 1 recorded, 1 fail, 1 error, 1 unavailable" in printed
 
 
 def test_list_runs_nothing(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.reports import sample
-from tests.verification.cli.commands import OBLONG, SCENE, refused, run
+from tests.verification.cli.commands import SCENE, refused, run
 
 WEDGE = "appendix-a wedge --r 1 --theta-deg 0 --gamma-deg"
 STRIP = "appendix-a strip --slope-deg 6.5 --wavelength 100 --position 0.25 --nu 0.3 --offsets=-3,3"
@@ -82,21 +82,6 @@ def test_what_a_terminal_would_obey_is_escaped() -> None:
         done = run("solve '" + "' '".join(words) + "'")
         assert (done.status, done.err.count("\n")) == (2, 1)
         assert not {"\x1b", "\x07"} & set(done.err)
-
-
-@pytest.mark.parametrize(
-    ("text", "old", "new", "says"),
-    [
-        (SCENE, "[friction]", '[tolerances]\n"upper.colour" = 0.1\n[friction]', "upper.colour"),
-        (OBLONG, "[2e-3, 1e-3]", "2e-3", "size"),
-    ],
-)
-def test_scene_files(text: str, old: str, new: str, says: str, tmp_path: Path) -> None:
-    assert old in text
-    path = tmp_path / "bad.toml"
-    path.write_text(text.replace(old, new, 1))
-    refused(f"solve {path} --json {tmp_path}/s.json", says)
-    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_a_study_beyond_the_memory_is_refused_before_its_store_is_made(folder: Path) -> None:

@@ -9,7 +9,6 @@ import math
 import re
 from collections.abc import Callable
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import meshio
@@ -17,11 +16,10 @@ import numpy as np
 import pytest
 
 import refimpl as rf
-from refimpl.solution.arrays import Patch
 from refimpl.solution.quantities import QUANTITIES
 from tests.changed import changed
 from tests.verification.cli.commands import SCENE, answer, run, shown
-from verification.cli import arrays, solve_table
+from verification.cli import solve_table
 from verification.cli.plot import hertz_of
 
 NUMBERS = {
@@ -233,22 +231,14 @@ def test_npz_netcdf_and_patches_agree(tmp_path: Path, monkeypatch: pytest.Monkey
     assert attributes["units"]["pressure"] == "Pa"
     assert attributes["contact_area_error"] > 0
     assert len(rows) == labels.max()
+    measures = ["area [m^2]", "load [N]", "mean_pressure [Pa]", "max_pressure [Pa]", "x [m]", "y [m]"]
+    assert list(rows[0]) == ["label", "elements", *measures, "plastic_share"]
     assert math.fsum(float(row["area [m^2]"]) for row in rows) == pytest.approx(attributes["contact_area"])
     assert float(rows[0]["max_pressure [Pa]"]) == pressure[labels == 1].max()
     with xarray.open_dataset("s.nc", engine="h5netcdf") as dataset:
         assert dataset.pressure.attrs["units"] == "Pa"
         assert dataset.attrs["max_pressure"] == float(dataset.pressure.max())
         np.testing.assert_array_equal(dataset.pressure, pressure)
-
-
-def test_patches_have_units_in_their_headers(tmp_path: Path) -> None:
-    patch = Patch(1, 4, 2e-6, 3.0, 1.5, 2.5, 4e-4, 5e-4, 0.25)
-    made: Any = SimpleNamespace(patches=lambda: [patch])
-    arrays.write_patches(made, tmp_path / "p.csv")
-    assert (tmp_path / "p.csv").read_text().splitlines() == [
-        "label,elements,area [m^2],load [N],mean_pressure [Pa],max_pressure [Pa],x [m],y [m],plastic_share",
-        "1,4,2e-06,3.0,1.5,2.5,0.0004,0.0005,0.25",
-    ]
 
 
 def test_hertz_of_a_ball_in_a_cup_and_of_no_ball() -> None:

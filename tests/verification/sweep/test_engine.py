@@ -13,7 +13,7 @@ import psutil
 import pytest
 
 from refimpl.errors import InputError
-from tests.verification.cli.children import Ended, finished, one_line, running, until
+from tests.verification.cli.children import Ended, finished, one_line, running, started, until
 from tests.verification.cli.commands import refused, shown
 from tests.verification.sweep.own_cluster import cluster
 from verification.framework.threads import THREADS, limited_to_one_thread
@@ -30,7 +30,6 @@ realisations = 10
 grid = [12, 16]
 lower_rms = [0.5e-6, 1.5e-6]
 """
-ONE_THREAD = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
 def small(realisations: int = 2, grid: tuple[int, ...] = (12, 16)) -> Study:
@@ -75,6 +74,7 @@ def test_failed_runs_are_named_not_kept_and_tried_again(
     assert (done.found, done.finished, len(done.failures)) == (0, 2, 2)
     assert set(done.failures.values()) == {"ArithmeticError: no solution"}
     assert [row["grid"] for row in done.rows] == [12, 12]
+    assert all(row["seconds"] > 0 for row in done.rows)
     assert [p.done + p.failed for p in seen] == [0, 1, 2, 3, 4]
     assert all(p.total == 4 for p in seen)
     assert (seen[-1].done, seen[-1].failed) == (2, 2)
@@ -109,13 +109,11 @@ def test_a_refusal_leaves_the_store(tmp_path: Path, kept: int) -> None:
 
 def test_the_killed_command_leaves_no_workers_and_resumes(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(STUDY)
-    code = "from verification.cli import main; raise SystemExit(main())"
-    command = [sys.executable, "-c", code, "sweep", "study.toml", "--store", "s.sqlite"]
-    killed = subprocess.Popen(command, cwd=tmp_path, env=ONE_THREAD, stderr=subprocess.DEVNULL)
+    killed = started(["sweep", "study.toml", "--store", "s.sqlite"], tmp_path)
     until(60, "three runs are kept", lambda: finished(tmp_path / "s.sqlite") >= 3)
     workers = [child.pid for child in psutil.Process(killed.pid).children()]
     killed.send_signal(signal.SIGKILL)
-    killed.wait()
+    killed.communicate()
     assert len(workers) >= 2
     until(60, "the workers ended", lambda: not any(map(running, workers)))
     kept = finished(tmp_path / "s.sqlite")
@@ -169,12 +167,9 @@ def test_a_scheduler_that_is_not_there(address: str, tmp_path: Path, monkeypatch
 def test_a_lost_scheduler_is_one_line_and_the_sweep_goes_on_later(tmp_path: Path) -> None:
     """Of 400 runs two are finished when it is killed."""
     (tmp_path / "study.toml").write_text('scene = "table1-rough"\nrealisations = 400\n[vary]\ngrid = [12]\n')
-    code = "from verification.cli import main; raise SystemExit(main())"
     with cluster(tmp_path, {"OMP_NUM_THREADS": "1"}, drop=THREADS) as (address, scheduler):
         tail = ["sweep", "study.toml", "--store", "s.sqlite", "--scheduler", address]
-        child = subprocess.Popen(
-            [sys.executable, "-c", code, *tail], cwd=tmp_path, text=True, stderr=subprocess.PIPE
-        )
+        child = started(tail, tmp_path)
         until(60, "two runs are kept", lambda: finished(tmp_path / "s.sqlite") >= 2)
         scheduler.kill()
         _, err = child.communicate(timeout=120)
