@@ -23,7 +23,7 @@ from reports.result_tables.code import (
     coverage,
     studies,
 )
-from reports.result_tables.paper import claims, confirmed, hertz, table_3
+from reports.result_tables.paper import claims, confirmed, hertz, others, table_3
 from reports.results import shown_counts
 from reports.text import percent
 from verification.output.result_files import read_results
@@ -37,12 +37,12 @@ You want a number that was computed here, and the file behind it. Find your ques
 
 - Do error bars contain the right value? Those of μ do in {covered} of {scenes} random scenes
   ([coverage](#coverage-of-error-bars)).
-- Which grid do I need, and how many seconds does it take? See [cost and accuracy](#cost-and-accuracy) and
+- Which grid do I need, and how long does a grid take? See [cost and accuracy](#cost-and-accuracy) and
   [time](#time).
 - Does μ agree with experiments? The friction of a rough pair is **not validated**: no experiment was found
   that states all inputs.
-- Are the numbers of the paper reproduced? It prints {printed}, most of them in Table 3. {agree} of
-  these agree with ours within the uncertainty of the difference. On the fine mesh of
+- Are the numbers of the paper reproduced? It prints {printed}, and {agree} of the {printed}
+  agree with ours within the uncertainty of the difference. On the fine mesh of
   [Table 3](#table-3-of-the-paper) {fine} of {of_fine} agree.
 - Do the statements of the paper hold? {claims} See [claims](#claims-of-the-paper) and
   [errata](#errata-of-the-paper).
@@ -69,6 +69,7 @@ def page(documents: Mapping[str, Any]) -> str:
         accuracy_costs(documents["accuracy_costs"]),
         costs(documents["benchmarks"]),
         table_3(found),
+        others(found),
         hertz(documents[RUN]),
         claims(evidence),
         codes(documents["cross_code"]),

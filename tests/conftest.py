@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import importlib
+import os
 from contextlib import suppress
 from pathlib import Path
 
@@ -19,6 +20,10 @@ hypothesis.settings.load_profile("unhurried")
 # `pytest.approx` allows 1e-12 beside every relative tolerance: in SI units lengths, areas and compliances are
 # that small, and compared to nothing. A number that should be zero states its own tolerance, by ``abs``.
 ApproxScalar.DEFAULT_ABSOLUTE_TOLERANCE = 0.0
+
+# One BLAS thread as in the Makefile: two round otherwise, and the dense solver misses 1e-12 by a half then.
+for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ.setdefault(name, "1")
 
 PACKAGES = ("refimpl", "appendix_a", "verification", "reports")
 

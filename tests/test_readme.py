@@ -131,14 +131,15 @@ def test_a_requested_accuracy_is_met_as_is_said() -> None:
     converged = "{}, {} and {} ended as `CONVERGED`".format(*map(len, shares))
     kept = f"all with an error below the requested accuracy (at most {worst:.2f} of it)"
     assert f"52 further scenes, against 768 elements: {converged}, {kept} |" in PAGE_OF_BARS
-    assert "met by every converged result of 52 further scenes" in README
+    counts = list(map(len, shares))
+    assert f"by every converged result ({min(counts)} to {max(counts)} of 52 other scenes)" in README
 
 
 def test_the_bars_of_the_default_grid_cover_as_is_said() -> None:
     (found,) = (one for one in committed("further")["cases"] if one["id"] == "accuracy/one-grid")
     mu, area = (found["data"]["covered"][name] for name in (MU, "contact_area_corrected"))
     scenes = found["data"]["scenes"]
-    said = f"{scenes} further scenes, against 768 elements: {mu} bars of mu and {area} of A cover |"
+    said = f"{scenes} other scenes, against 768 elements: {mu} bars of mu and {area} of A cover |"
     assert f"| mu and A on the default grid, 256 elements | {said}" in PAGE_OF_BARS
     assert f"(against 768)? | in {mu} of {scenes} further scenes |" in README
 

@@ -41,7 +41,7 @@ def coverage(documents: Mapping[str, Any]) -> str:
         f"File: {link('coverage_corrected')}.\n\n"
         "- *Covered*: share of the error bars that contain the reference; an unbounded bar does.\n"
         "- *Covered at worst*: this share if every reference were wrong by its own error bound.\n"
-        "- *Usable*: share of the error bars that are at most half of their number.\n"
+        "- *Usable*: share of the error bars that are at most half of the value that they belong to.\n"
         "- *Error bar over error*: median ratio of the error bar to the error that was found.\n\n"
         "μ is the [corrected mu](../docs/error-bars.md#corrected-mu-the-edge-bias-removed). A is summed over "
         "elements, or perimeter-corrected."
@@ -81,10 +81,9 @@ def costs(benchmarks: Mapping[str, Any]) -> str:
         rows.append((f"{kind} flat", f"{M}²", *cells))
     head = ("surface", "grid", *(f"{label} (s)" for label in OWN), *(f"ratio: {name}" for name in PEERS))
     text = (
-        "How long does the contact of the paper's Table 1 take? Every code solves it until its relative "
-        "duality gap, recomputed here, is 1e-8. It has one thread "
-        f"({', '.join(_processors(benchmarks['runs']))}). Numbers are medians. "
-        f"File: {link('benchmarks')}.\n\n"
+        "How long does the contact of the paper's Table 1 take? Every code runs on one thread "
+        f"({', '.join(_processors(benchmarks['runs']))}) until its relative duality gap, recomputed here, is "
+        f"1e-8. Times are medians of several runs. File: {link('benchmarks')}.\n\n"
         "- *Solver*: seconds of this code for the pressures alone.\n"
         "- *With error bars*: from a scene to numbers with error bars. The next two columns add friction, "
         "then slopes.\n"
@@ -116,33 +115,29 @@ def accuracy_costs(costs: Mapping[str, Any]) -> str:
     head = ("class of scenes", "number", *(f"{100 * demand:g} %" for demand in demands))
     text = (
         "Which grid do you need for an accuracy? A cell has the coarsest grid from which on all relative "
-        "errors stay within the percentage of its column. Its seconds follow in brackets. "
-        f"Friction and slopes are included. File: {link('accuracy_costs')}.\n\n"
+        "errors stay within the percentage of its column. Friction and slopes are included. "
+        f"File: {link('accuracy_costs')}.\n\n"
         "- *Error*: difference from a grid of 2048², plus the error bar of that grid.\n"
-        "- Each class has three scenes. Grid and seconds are medians if all three meet the accuracy.\n"
-        "- *> 1024² (2 of 3: 64²)*: two of three scenes meet it, on 64² or coarser. The third needs a finer "
-        "grid than 1024², or its reference is too uncertain."
+        "- Each class has three scenes. The cell is their median.\n"
+        "- *64² (2 of 3)*: two of three scenes meet the accuracy, on 64² or coarser. The third does not up "
+        "to 1024², or its reference is too uncertain.\n"
+        "- *> 1024²*: none of the three does."
     )
     return section("Cost and accuracy", text, head, rows)
 
 
 def _cost(entry: Mapping[str, Any], realisations: Sequence[Sequence[Mapping[str, Any]]]) -> str:
-    """Return the median grid and its seconds, or how many realisations meet the demand where not all do.
+    """Return the median grid, or the finest of those that meet the demand where not all realisations do.
 
     >>> ends = [[{"M": M, "errors": {"mu": e}} for M, e in ((32, 0.01), (1024, e))] for e in (0.01, None)]
-    >>> _cost({"quantity": "mu", "error": 0.03, "M": None, "seconds": None}, ends)
-    '> 1024² (1 of 2: 32²)'
+    >>> _cost({"quantity": "mu", "error": 0.03, "M": None}, ends)
+    '32² (1 of 2)'
     """
     if entry["M"] is not None:
-        return f"{entry['M']:.0f}² ({_seconds(entry['seconds'])})"
+        return f"{entry['M']:.0f}²"
     grids = [_coarsest(rows, entry["quantity"], entry["error"]) for rows in realisations]
     met = [grid for grid in grids if grid is not None]
-    return f"> 1024² ({len(met)} of {len(grids)}: {max(met)}²)" if met else "> 1024²"
-
-
-def _seconds(seconds: float) -> str:
-    """Return seconds with two digits; below 0.05 s they vary by a factor of two from run to run."""
-    return "< 0.05 s" if seconds < 0.05 else f"{seconds:.2g} s"
+    return f"{max(met)}² ({len(met)} of {len(grids)})" if met else "> 1024²"
 
 
 def _coarsest(rows: Sequence[Mapping[str, Any]], quantity: str, demand: float) -> int | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from reports.agreement import Number, fine
+from reports.agreement import Number, fine, printed
 from reports.claims import CONDITIONAL, UNJUDGED, VERDICTS, Judged, judged
 from reports.evidence import Evidence
 from reports.exhibit import Column
@@ -13,15 +13,24 @@ from reports.result_tables import RUN, link, listing, origin
 from reports.results import Case
 from reports.text import interval, quoted, symbols, unit_of
 
-TABLE_3: dict[str, Column] = {
-    "half-space": lambda n: n.label.partition(", ")[0],
-    "grid": lambda n: n.label.partition(", ")[2],
-    "number": lambda n: n.quantity.partition(",")[0] + (f" ({n.unit})" if n.unit else ""),
+COMPARED: dict[str, Column] = {
     "printed": lambda n: f"{n.printed:.4g}",
     "computed": lambda n: interval(n.computed, n.half_width),
     "E (%)": lambda n: f"{100 * n.difference / n.printed:+.1f}",
     "u (%)": lambda n: f"{100 * n.uncertainty / n.printed:.1f}",
     "agrees": lambda n: "yes" if n.within else "no",
+}
+TABLE_3: dict[str, Column] = {
+    "half-space": lambda n: n.label.partition(", ")[0],
+    "grid": lambda n: n.label.partition(", ")[2],
+    "number": lambda n: n.quantity.partition(",")[0] + (f" ({n.unit})" if n.unit else ""),
+    **COMPARED,
+}
+OTHERS: dict[str, Column] = {
+    "part of the paper": lambda n: n.part,
+    "number": lambda n: n.quantity + (f" ({n.unit})" if n.unit else ""),
+    "of": lambda n: n.label,
+    **COMPARED,
 }
 
 
@@ -42,6 +51,17 @@ def table_3(found: Sequence[Number]) -> str:
         "- *Agrees*: abs(E) is at most u."
     )
     return listing("Table 3 of the paper", text, rows, TABLE_3)
+
+
+def others(found: Sequence[Number]) -> str:
+    """Show the printed numbers outside Table 3, in the same columns."""
+    rows = [n for n in found if n.part != "Table 3"]
+    text = (
+        f"Are the other {len(printed(rows))} printed numbers reproduced? Columns are as above. The paper "
+        "does not state the roughness of a scatter: it counts once, and agrees if any of its rows does. "
+        f"Files: {link(RUN)}, {link('reproduction')}."
+    )
+    return listing("Other numbers of the paper", text, rows, OTHERS)
 
 
 def _scaled(case: Case, key: str) -> str:
@@ -65,7 +85,7 @@ def hertz(run: Mapping[str, Any]) -> str:
     text = (
         "Is the exact solution met? A smooth ball under 70 N without friction has that of Hertz. An order of "
         "convergence says how fast errors fall on finer grids; its error is a difference. All other errors "
-        f"are relative. *Shifts*: mean of as many positions of the ball between elements. File: {link(RUN)}."
+        f"are relative. *64 shifts*: mean over 64 positions of the ball between elements. File: {link(RUN)}."
     )
     shown = [case for case in run["cases"] if case["id"].startswith("hertz/")]
     small_slope = "hertz/small-slope"  # its reference is no solution of Hertz
@@ -117,7 +137,8 @@ def confirmed(items: Sequence[Judged]) -> str:
     judged = sum(count for verdict, count in counts.items() if verdict not in UNJUDGED)
     under = counts[CONDITIONAL]
     return (
-        f"Of {judged} judged statements of the paper {holds} are confirmed, {under} of these with conditions."
+        f"Of {judged} statements that a computation can decide {holds} are confirmed, {under} of these with "
+        "conditions."
     )
 
 
