@@ -32,7 +32,7 @@ def test_error_bars_take_as_long_as_is_said() -> None:
     for (_, M), rows in RUNS.items():
         whole, alone = (rows[code]["seconds"]["median"] for code in (OWN, ALONE))
         shares.setdefault(M, []).append(whole / alone - 1)
-    assert "about as long as the solver at 128 x 128, and about half as long at 512 x 512" in PAGE
+    assert "about as long as the solver at 128 x 128, and half as long at 512 x 512" in PAGE
     assert 0.8 < min(shares[128]) <= max(shares[128]) < 1.25
     assert 0.35 < min(shares[512]) <= max(shares[512]) < 0.65
 
