@@ -43,3 +43,17 @@ def test_a_summary_counts_bars_known_values() -> None:
     assert every["bias_over_bar"] == pytest.approx(1.6 / 9.826, rel=1e-5)
     assert every["p"] == pytest.approx(1 - 0.92**4, rel=1e-5)  # probability of three of four, or fewer
     assert (every["longest_miss"], every["unbounded"]) == (pytest.approx(3.0), 0.0)
+
+
+def test_each_class_has_a_summary_of_its_numbers_and_one_of_all() -> None:
+    row = {"error": 0.1, "bar": 0.2, "reference_bound": 0.0, "too_large": True, "number": "approach"}
+    found = classes.tables([{"class": "grooves", **row}, {"class": "waves", **row}])
+    counted = [(each["class"], each["number"], each["scenes"]) for each in found]
+    assert counted == [
+        ("grooves", "approach", 1),
+        ("grooves", None, 1),
+        ("waves", "approach", 1),
+        ("waves", None, 1),
+        (None, "approach", 2),
+        (None, None, 2),
+    ]
