@@ -13,6 +13,14 @@ from refimpl.grid import Grid, Window, differences, inner, resampled, second_dif
 FREE, PERIODIC = Grid((7, 4), (1.4, 2.0)), Grid((7, 4), (1.4, 2.0), periodic=True)
 
 
+def test_sizes_of_a_rectangle() -> None:
+    assert FREE.spacings == pytest.approx((0.2, 0.5), rel=1e-15)
+    assert FREE.element_size == pytest.approx(math.sqrt(0.1), rel=1e-15)
+    assert FREE.size == pytest.approx(math.sqrt(2.8), rel=1e-15)
+    assert FREE.nominal_area == pytest.approx(2.8, rel=1e-15)
+    assert FREE.aspect == pytest.approx(2.5, rel=1e-15)
+
+
 @pytest.mark.parametrize("shape", [(0, 3), (3, -1), (3, 2.0), (True, 3), ("3", 3)])
 def test_counts_must_be_whole_and_positive(shape: tuple[int, int]) -> None:
     with pytest.raises(InputError, match=r"^grid = "):

@@ -134,7 +134,9 @@ def test_without_friction_slopes_that_are_all_of_mu_stay_and_facets_still_shear(
     problem = discretise(replace(SCENE, friction=rf.Friction()), SCENE.grid(6))
     plan = make_plan(problem, demand=1.0, for_mu=True)
     assert not make_plan(problem, demand=1.0).includes("oblique")
-    assert plan.restore(problem, "plastic").includes("oblique")
+    restored = plan.restore(problem, "plastic")
+    assert restored.includes("oblique")
+    assert [term.name for term in restored.terms if "restored" in term.reason] == ["plastic"]
     corrected = choose(problem, CONTACT, Terms(slope_correction=True), 1.0)
     assert [term.included for term in corrected] == [True, True, True, True, False, False]
 

@@ -42,3 +42,17 @@ def test_a_summary_counts_bars_known_values() -> None:
     assert (every["held_of_usable"], every["median_bar_over_error"]) == pytest.approx((2 / 3, 2.5), rel=1e-5)
     assert every["p"] == pytest.approx(1 - 0.92**4, rel=1e-5)  # probability of three of four, or fewer
     assert every["unbounded"] == 0.0
+
+
+def test_each_class_has_a_summary_of_its_numbers_and_one_of_all() -> None:
+    row = {"error": 0.1, "bar": 0.2, "reference_bound": 0.0, "number": "approach"}
+    found = classes.tables([{"class": "grooves", **row}, {"class": "waves", **row}])
+    counted = [(each["class"], each["number"], each["scenes"]) for each in found]
+    assert counted == [
+        ("grooves", "approach", 1),
+        ("grooves", None, 1),
+        ("waves", "approach", 1),
+        ("waves", None, 1),
+        (None, "approach", 2),
+        (None, None, 2),
+    ]

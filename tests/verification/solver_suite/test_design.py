@@ -14,7 +14,7 @@ from refimpl.grid import Array
 from verification.solver_suite import covering, own
 from verification.solver_suite.checks.covering import further
 from verification.solver_suite.covering import FILE, stored, text
-from verification.solver_suite.design import further_rows, posed, rows
+from verification.solver_suite.design import further_rows, in_turn, posed, rows
 from verification.solver_suite.dimensions import DESIGNS, FIXED, FURTHER
 from verification.solver_suite.isolated import Limited
 from verification.solver_suite.protocol import ContactProblem
@@ -82,6 +82,14 @@ def test_our_solver_claims_no_success_on_a_gap_that_strong_tau_leaves_without_so
     strong = replace(drawn, coupling=replace(drawn.coupling, tau=drawn.load / drawn.area))
     assert not own.solve(strong).converged
     assert own.solve(replace(strong, coupling=None)).converged
+
+
+def test_problems_in_turn_differ_in_one_dimension() -> None:
+    for row in rows()["memory"]:
+        first, second, third = in_turn(row)
+        assert first == third
+        changed = {name for name in {*first, *second} if second.get(name) != first.get(name)}
+        assert len(changed) == 1 or changed == {"modulus", "coupling"}  # which leaves c0 as it is
 
 
 def test_a_memory_is_judged_by_all_problems_in_turn() -> None:
