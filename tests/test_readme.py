@@ -132,7 +132,7 @@ def test_a_requested_accuracy_is_met_as_is_said() -> None:
     kept = f"all with an error below the requested accuracy (at most {worst:.2f} of it)"
     assert f"52 further scenes, against 768 elements: {converged}, {kept} |" in PAGE_OF_BARS
     counts = list(map(len, shares))
-    assert f"by every converged result ({min(counts)} to {max(counts)} of 52 other scenes)" in README
+    assert f"by every converged result (of 52 other scenes {min(counts)} to {max(counts)} converge)" in README
 
 
 def test_the_bars_of_the_default_grid_cover_as_is_said() -> None:

@@ -28,8 +28,9 @@ TABLE_3: dict[str, Column] = {
 }
 OTHERS: dict[str, Column] = {
     "part of the paper": lambda n: n.part,
-    "number": lambda n: n.quantity + (f" ({n.unit})" if n.unit else ""),
-    "of": lambda n: n.label,
+    "quantity": lambda n: n.quantity,
+    "which": lambda n: n.label,
+    "unit": lambda n: n.unit,
     **COMPARED,
 }
 
@@ -46,8 +47,8 @@ def table_3(found: Sequence[Number]) -> str:
         "Numbers of rough flats are means over 75 random surfaces. μ and A are summed over elements, as in "
         f"the paper. File: {link('reproduction')}.\n\n"
         "- *E*: computed minus printed number, in per cent of the printed one.\n"
-        "- *u*: uncertainty of E (95 %), from the random surfaces and from the rounding of printed numbers "
-        "and inputs.\n"
+        "- *u*: uncertainty of E (95 %), from random surfaces (ours and the paper's) and from the rounding "
+        "of printed numbers and inputs.\n"
         "- *Agrees*: abs(E) is at most u."
     )
     return listing("Table 3 of the paper", text, rows, TABLE_3)
@@ -137,8 +138,8 @@ def confirmed(items: Sequence[Judged]) -> str:
     judged = sum(count for verdict, count in counts.items() if verdict not in UNJUDGED)
     under = counts[CONDITIONAL]
     return (
-        f"Of {judged} statements that a computation can decide {holds} are confirmed, {under} of these with "
-        "conditions."
+        f"Of {judged} statements that are not true by definition {holds} are confirmed, {under} of these "
+        "with conditions."
     )
 
 
@@ -171,6 +172,7 @@ def errata(evidence: Evidence) -> str:
     }
     text = (
         "Which equations and numbers of the paper need a correction? *Measure* names an error that shows it. "
-        "*As printed* is this error with the printed text, *as corrected* with the correction."
+        "*As printed* is this error with the printed text, *as corrected* with the correction. A statement "
+        "that needs a correction may have a worse verdict above."
     )
     return listing("Errata of the paper", text, evidence.errata, columns)
