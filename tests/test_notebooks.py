@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import ast
+import importlib
 import json
 import re
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
 
+from tests.conftest import PACKAGES
 from tests.documents import ROOT, agree
 from tests.test_examples import legible
 
@@ -88,6 +92,35 @@ def test_figures_are_legible_on_a_phone_and_have_a_text(name: str) -> None:
             inches = float(re.findall(r"figsize=\(([\d.]+)", source)[0])
             assert legible(source, inches)
             assert len(cell["metadata"]["alt"].split()) > 5
+
+
+@pytest.mark.parametrize("name", STATED)
+def test_what_it_takes_from_our_modules_is_there(name: str) -> None:
+    """Most notebooks run at night alone: a function that goes must be noticed by day."""
+    code = ("".join(cell["source"]) for cell in cells(name) if cell["cell_type"] == "code")
+    tree = list(ast.walk(ast.parse("\n".join(code))))
+    modules: dict[str, ModuleType] = {}
+    for node in tree:
+        if isinstance(node, ast.Import):
+            ours = [each for each in node.names if each.name.partition(".")[0] in PACKAGES]
+            modules |= {each.asname or each.name: importlib.import_module(each.name) for each in ours}
+        elif isinstance(node, ast.ImportFrom) and str(node.module).partition(".")[0] in PACKAGES:
+            for each in node.names:
+                found = importlib.import_module(str(node.module))
+                if not hasattr(found, each.name):
+                    importlib.import_module(f"{node.module}.{each.name}")
+                if isinstance(getattr(found, each.name), ModuleType):
+                    modules[each.asname or each.name] = getattr(found, each.name)
+    used = [node for node in tree if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name)]
+    missing = [
+        f"{node.value.id}.{node.attr}"
+        for node in used
+        if isinstance(node.value, ast.Name)
+        and node.value.id in modules
+        and not hasattr(modules[node.value.id], node.attr)
+    ]
+    assert modules
+    assert missing == []
 
 
 IN_CI = "ball_on_rough_flat"
