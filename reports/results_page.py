@@ -40,7 +40,7 @@ You want a number that was computed here, and the file behind it. Find your ques
 - Which grid do I need, and how long does a grid take? See [cost and accuracy](#cost-and-accuracy) and
   [time](#time).
 - Does μ agree with experiments? The friction of a rough pair is **not validated**: no experiment was found
-  that states all inputs.
+  that states all inputs. [What was compared](../docs/experiments.md).
 - Are the numbers of the paper reproduced? It prints {printed}, and {agree} of the {printed}
   agree with ours within the uncertainty of the difference. On the fine mesh of
   [Table 3](#table-3-of-the-paper) {fine} of {of_fine} agree.
@@ -48,6 +48,8 @@ You want a number that was computed here, and the file behind it. Find your ques
   [errata](#errata-of-the-paper).
 - Does the code pass its own checks? Of {checks} [checks](#checks): {statuses}. The tolerance of a `recorded`
   check was set from its own result.
+- Is an exact solution met? See [Hertz contact](#hertz-contact). Were wrong results found? See
+  [studies](#studies).
 - How do other codes fare? See [solvers in the suite](#solvers-in-the-suite-for-other-solvers).
 
 The paper is that of Karpenko and Akay (2001). Every table names its result file;

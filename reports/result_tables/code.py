@@ -37,7 +37,7 @@ def coverage(documents: Mapping[str, Any]) -> str:
     text = (
         f"Does an error bar of 95 % contain the right value? {scenes} random scenes were drawn after the "
         "constants of the error bars were fixed. Each is solved on one grid of 48 to 128 elements per side. "
-        "The reference is its solution on 384 elements, of rounded punches a closed form. "
+        "The reference is its solution on 384 elements; for rounded punches it is a closed form. "
         f"File: {link('coverage_corrected')}.\n\n"
         "- *Covered*: share of the error bars that contain the reference; an unbounded bar does.\n"
         "- *Covered at worst*: this share if every reference were wrong by its own error bound.\n"
@@ -114,8 +114,9 @@ def accuracy_costs(costs: Mapping[str, Any]) -> str:
             rows.append((one["class"], label, *cells))
     head = ("class of scenes", "number", *(f"{100 * demand:g} %" for demand in demands))
     text = (
-        "Which grid do you need for an accuracy? A cell has the coarsest grid from which on all relative "
-        "errors stay within the percentage of its column. Friction and slopes are included. "
+        "Which grid do you need for an accuracy? A cell has the coarsest grid that is accurate enough: "
+        "its relative error, and those of all finer grids, are at most the percentage above. Friction and "
+        "slopes are included. "
         f"File: {link('accuracy_costs')}.\n\n"
         "- *Error*: difference from a grid of 2048², plus the error bar of that grid.\n"
         "- Each class has three scenes. The cell is their median.\n"

@@ -59,7 +59,8 @@ def others(found: Sequence[Number]) -> str:
     rows = [n for n in found if n.part != "Table 3"]
     text = (
         f"Are the other {len(printed(rows))} printed numbers reproduced? Columns are as above. The paper "
-        "does not state the roughness of a scatter: it counts once, and agrees if any of its rows does. "
+        "prints three scatters without their roughness. Each has three rows here, counts once, and agrees if "
+        "one of its rows does. "
         f"Files: {link(RUN)}, {link('reproduction')}."
     )
     return listing("Other numbers of the paper", text, rows, OTHERS)
