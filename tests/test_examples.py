@@ -83,7 +83,7 @@ def test_an_example_is_short(name: str) -> None:
 
 
 def legible(script: str, inches: float) -> bool:
-    """Whether the smallest letters of a picture of that width have 9 pixels on a phone.
+    """Return whether the smallest letters of a picture of that width have 9 pixels on a phone.
 
     They have 10 points unless a size is stated; a window of 420 pixels shows a picture on 388.
     """

@@ -111,13 +111,12 @@ def test_what_it_takes_from_our_modules_is_there(name: str) -> None:
                     importlib.import_module(f"{node.module}.{each.name}")
                 if isinstance(getattr(found, each.name), ModuleType):
                     modules[each.asname or each.name] = getattr(found, each.name)
-    used = [node for node in tree if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name)]
+    dotted = (node for node in tree if isinstance(node, ast.Attribute))
+    used = {(node.value.id, node.attr) for node in dotted if isinstance(node.value, ast.Name)}
     missing = [
-        f"{node.value.id}.{node.attr}"
-        for node in used
-        if isinstance(node.value, ast.Name)
-        and node.value.id in modules
-        and not hasattr(modules[node.value.id], node.attr)
+        f"{name}.{attribute}"
+        for name, attribute in used
+        if name in modules and not hasattr(modules[name], attribute)
     ]
     assert modules
     assert missing == []

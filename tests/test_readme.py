@@ -13,6 +13,7 @@ from tests.documents import ROOT, blocks, commands, run
 from verification.coverage.class_scenes import GRIDS
 from verification.coverage.class_scenes import scene as class_scene
 from verification.output.result_files import committed
+from verification.solver_suite.suite import suite
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 PAGE_OF_BARS = (ROOT / "docs/error-bars.md").read_text(encoding="utf-8")
@@ -225,6 +226,10 @@ def test_how_often_identified_intervals_cover_is_of_the_studies() -> None:
     names = ("tau", "beta", "mu")
     cases = [c["data"] for c in committed("further")["cases"] if c["id"].startswith("identification/")]
     fits = [(d["twins"] - d["refused"], d["coverage"]) for d in cases if "coverage" in d]
+    ((some, share),) = ((d["twins"], d["coverage"]) for d in cases if "further" in d.get("coverage", ()))
+    tau, beta = (round(some * share[name]) for name in ("tau", "beta"))
+    text = " ".join(page.split())
+    assert f"Of {some} test tables {tau} intervals of tau and {beta} of beta then contained the truth" in text
     total = sum(count for count, _ in fits)
     covered = [round(sum(count * share[name] for count, share in fits)) for name in names]
     said = " | ".join(f"{count} of {total}" for count in covered)
@@ -236,3 +241,12 @@ def test_how_often_identified_intervals_cover_is_of_the_studies() -> None:
     for start, some in ((f"version: {len(rows)} tables", rows), (f"these, {len(finer)} fits", finer)):
         (line,) = (line for line in page.splitlines() if start in line)
         assert line.endswith(" | ".join(str(sum(row[name] for row in some)) for name in names) + " |")
+
+
+def test_most_cases_of_the_suite_allow_the_claims_that_the_page_says() -> None:
+    allowed = [check.tolerance for check in suite() if "claim" in check.tolerance_reason]
+    page = (ROOT / "docs/verdicts.md").read_text(encoding="utf-8")
+    assert allowed.count(1.01) > 0.8 * len(allowed)
+    assert {2.0, 4.1} < set(allowed)
+    said = "Most cases allow 1.01, those with a prescribed approach 2, two answers that are compared 4."
+    assert said in page

@@ -51,5 +51,5 @@ def unit_at_scale(value: float, unit: str) -> Unit:
     >>> unit_at_scale(4.1e-4, "m").name, unit_at_scale(0.8e9, "Pa").name, unit_at_scale(0.0, "m").name
     ('um', 'MPa', 'pm')
     """
-    rising = sorted(_SCALES[unit], key=lambda other: other.size)
+    rising = sorted(_SCALES[unit], key=lambda other: other.size)  # 1e-9: one unit, but for rounding, is one
     return [rising[0], *(other for other in rising if other.size * (1 - 1e-9) <= abs(value))][-1]
